@@ -92,11 +92,10 @@ enum orl_result orl_site_page(struct site *site);
 // The text of index.html; the caller releases it with free(). NULL, logged: an error. poster: the
 // picture's file, "": none.
 char *orl_walk_index(const struct orl_log *log, const char *title, const char *poster);
-// Adds the paths of the data files of a finished site, which the page requests by name: all but page
-// and modules.
-enum orl_result orl_site_data(const struct orl_log *log, const char *dir, struct orl_names *paths);
-// Adds the paths of all its files.
-enum orl_result orl_site_files(const struct orl_log *log, const char *dir, struct orl_names *paths);
+// Adds the paths of the files of a finished site; with `data`, of those that the page requests by name:
+// all but page and modules.
+enum orl_result orl_site_files(const struct orl_log *log, const char *dir, bool data,
+                               struct orl_names *paths);
 // Writes the finished site as one HTML file.
 enum orl_result orl_site_pack(struct site *site, const char *file);
 

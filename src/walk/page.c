@@ -155,12 +155,17 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
     return NULL;
 }
 
+// Writes a file that is loaded before the page shows anything.
+static enum orl_result write_first(struct site *site, const char *name, const char *text)
+{
+    site->report->first_bytes += strlen(text);
+    return orl_site_write(site, name, text, strlen(text));
+}
+
 static enum orl_result write_index(struct site *site)
 {
     char *page = orl_walk_index(site->log, site->params->title, "poster.jpg");
-    enum orl_result result = page ? orl_site_write(site, index_name, page, strlen(page))
-                                  : ORL_ERR_MEMORY;
-    site->report->first_bytes += page ? strlen(page) : 0;
+    enum orl_result result = page ? write_first(site, index_name, page) : ORL_ERR_MEMORY;
     free(page);
     return result;
 }
@@ -188,9 +193,7 @@ static enum orl_result write_shaders(struct site *site)
         if (is_shared(f->name))
             json_object_set_new(shaders, f->name, json_string(f->text));
     char *text = json_dumps(shaders, JSON_COMPACT);
-    enum orl_result result = text ? orl_site_write(site, "shaders.json", text, strlen(text))
-                                  : ORL_ERR_MEMORY;
-    site->report->first_bytes += text ? strlen(text) : 0;
+    enum orl_result result = text ? write_first(site, "shaders.json", text) : ORL_ERR_MEMORY;
     free(text);
     json_decref(shaders);
     return result;
@@ -203,8 +206,7 @@ enum orl_result orl_site_page(struct site *site)
         if (strcmp(f->name, index_name) == 0 ||
             strncmp(f->name, own_shaders, strlen(own_shaders)) == 0)
             continue;
-        result = orl_site_write(site, f->name, f->text, strlen(f->text));
-        site->report->first_bytes += strlen(f->text);
+        result = write_first(site, f->name, f->text);
     }
     return result == ORL_OK ? write_shaders(site) : result;
 }
@@ -253,7 +255,7 @@ static bool is_data(const char *path)
            strcmp(path, "icon.svg") != 0 && strncmp(path, "js/", 3) != 0;
 }
 
-// Adds the paths of the files below `folder` of the site ("": the site itself), perhaps of data alone.
+// As orl_site_files, of what is below `folder` of the site.
 static enum orl_result list_files(const struct orl_log *log, const char *dir, const char *folder,
                                   bool data, struct orl_names *paths)
 {
@@ -277,14 +279,10 @@ static enum orl_result list_files(const struct orl_log *log, const char *dir, co
     return result;
 }
 
-enum orl_result orl_site_data(const struct orl_log *log, const char *dir, struct orl_names *paths)
+enum orl_result orl_site_files(const struct orl_log *log, const char *dir, bool data,
+                               struct orl_names *paths)
 {
-    return list_files(log, dir, "", true, paths);
-}
-
-enum orl_result orl_site_files(const struct orl_log *log, const char *dir, struct orl_names *paths)
-{
-    return list_files(log, dir, "", false, paths);
+    return list_files(log, dir, "", data, paths);
 }
 
 static void add_file(const struct site *site, const char *path, struct text *text)
@@ -309,7 +307,7 @@ static void add_file(const struct site *site, const char *path, struct text *tex
 static void add_files(const struct site *site, struct text *text)
 {
     struct orl_names paths = {0};
-    text->result = orl_site_data(site->log, site->dir, &paths);
+    text->result = orl_site_files(site->log, site->dir, true, &paths);
     for (size_t i = 0; i < paths.count && text->result == ORL_OK; i++)
         add_file(site, paths.items[i], text);
     orl_names_finish(&paths);

@@ -26,17 +26,25 @@ enum orl_result orl_site_write(struct site *site, const char *path, const void *
     return result;
 }
 
-json_t *orl_site_file(struct site *site, const char *path)
+// False: the file is missing, and has no bytes.
+static bool find_bytes(const struct site *site, const char *path, size_t *bytes)
 {
     struct stat status;
     char *file = orl_site_path(site, path);
     bool there = file && stat(file, &status) == 0;
+    *bytes = there ? (size_t)status.st_size : 0;
     free(file);
-    if (!there) {
+    return there;
+}
+
+json_t *orl_site_file(struct site *site, const char *path)
+{
+    size_t bytes;
+    if (!find_bytes(site, path, &bytes)) {
         orl_logf(site->log, ORL_LOG_ERROR, "%s is missing in the site", path);
         return NULL;
     }
-    return json_pack("{s:s, s:I}", "file", path, "bytes", (json_int_t)status.st_size);
+    return json_pack("{s:s, s:I}", "file", path, "bytes", (json_int_t)bytes);
 }
 
 // --- the output ---
@@ -80,23 +88,15 @@ static enum orl_result make_folders(struct site *site)
 
 // --- the parts of the site ---
 
-static size_t folder_bytes(const struct site *site, const char *folder)
+static size_t site_bytes(const struct site *site)
 {
-    struct orl_names names = {0};
-    size_t bytes = 0;
-    if (orl_dir_list(site->log, folder, &names) != ORL_OK)
-        return 0;
-    for (size_t i = 0; i < names.count; i++) {
-        struct stat status;
-        char *path = orl_path_join(site->log, folder, names.items[i]);
-        if (path && orl_path_is_dir(path))
-            bytes += folder_bytes(site, path);
-        else if (path && stat(path, &status) == 0)
-            bytes += (size_t)status.st_size;
-        free(path);
-    }
-    orl_names_finish(&names);
-    return bytes;
+    struct orl_names paths = {0};
+    size_t all = 0, bytes;
+    if (orl_site_files(site->log, site->dir, false, &paths) == ORL_OK)
+        for (size_t i = 0; i < paths.count; i++)
+            all += find_bytes(site, paths.items[i], &bytes) ? bytes : 0;
+    orl_names_finish(&paths);
+    return all;
 }
 
 static enum orl_result write_site(struct site *site)
@@ -116,9 +116,8 @@ static enum orl_result write_site(struct site *site)
     if (result == ORL_OK && site->carves)
         result = orl_site_steps(site, &steps);
     if (result == ORL_OK) {
-        json_t *poster = orl_site_file(site, "poster.jpg");
-        site->report->first_bytes += (size_t)json_integer_value(json_object_get(poster, "bytes"));
-        json_decref(poster);
+        size_t poster;
+        site->report->first_bytes += find_bytes(site, "poster.jpg", &poster) ? poster : 0;
         return orl_site_manifest(site, points, photos, steps);
     }
     json_decref(points);
@@ -179,7 +178,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
     if (result == ORL_OK)
         result = write_site(&site);
     if (result == ORL_OK)
-        report->bytes = folder_bytes(&site, site.dir);
+        report->bytes = site_bytes(&site);
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
                                     : replace_site(&site, &dir);

@@ -19,7 +19,7 @@ enum orl_result orl_site_list(const struct site *site)
 {
     struct orl_names paths = {0};
     char *file = orl_site_path(site, list_name);
-    enum orl_result result = file ? orl_site_files(site->log, site->dir, &paths) : ORL_ERR_MEMORY;
+    enum orl_result result = file ? orl_site_files(site->log, site->dir, false, &paths) : ORL_ERR_MEMORY;
     json_t *list = json_array();
     for (size_t i = 0; i < paths.count; i++)
         json_array_append_new(list, orl_json_string(paths.items[i]));

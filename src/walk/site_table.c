@@ -49,7 +49,7 @@ static enum orl_result read_site(const struct orl_log *log, const char *dir,
                                  struct site_table *table)
 {
     struct orl_names paths = {0};
-    enum orl_result result = orl_site_data(log, dir, &paths);
+    enum orl_result result = orl_site_files(log, dir, true, &paths);
     for (size_t i = 0; result == ORL_OK && i < paths.count; i++)
         result = add(log, dir, paths.items[i], table);
     orl_names_finish(&paths);
