@@ -12,12 +12,11 @@ export class MethodPanel {
         this.options = new Map(methods.options.map(option => [option.key, option]));
         this.settings = {};  // that this client has changed, as the server has accepted them
         this.asked = null;   // {name, settings} that the server has not answered
-        this.select = make("select", {}, ...methods.list.map(m => make("option", {textContent: m.name})));
-        this.select.addEventListener("change", () => this.ask(this.select.value, {}));
+        this.select = make("select", {onchange: () => this.ask(this.select.value, {})},
+                           ...methods.list.map(m => make("option", {textContent: m.name})));
         this.about = make("p");
         this.rows = make("div");
-        this.problem = make("p", {className: "problem"});
-        this.problem.setAttribute("role", "alert");
+        this.problem = make("p", {className: "problem", role: "alert"});
         const element = byId("method"), t = text.methods;
         element.setAttribute("aria-label", t.title);
         element.append(make("h2", {textContent: t.title}), make("label", {className: "line"}, t.method, this.select),

@@ -38,12 +38,9 @@ export class Notes {
     fill()
     {
         this.marks = this.settings.notes.map((note, i) => {
-            const mark = make("button", {type: "button", className: "mark", textContent: String(i + 1),
-                                         title: note.title, hidden: true}); // until update() places it
-            mark.setAttribute("aria-label", text.notes.mark(i + 1, note.title));
-            mark.wasBehind = false;
-            mark.addEventListener("click", () => this.open(i));
-            return mark;
+            const label = text.notes.mark(i + 1, note.title);
+            return button(String(i + 1), () => this.open(i), {className: "mark", title: note.title, label,
+                                                              wasBehind: false, hidden: true}); // until update()
         });
         this.layer.replaceChildren(...this.marks);
         if (this.list)
@@ -155,14 +152,14 @@ export class Notes {
     {
         const t = text.notes, maker = byId("maker"), s = this.settings;
         const line = (label, key) => {
-            const input = make("input", {type: "text", maxLength: 200, value: s[key] || ""});
-            input.addEventListener("change", () => this.change({[key]: input.value}));
+            const input = make("input", {type: "text", maxLength: 200, value: s[key] || "",
+                                         onchange: () => this.change({[key]: input.value})});
             return make("label", {className: "line"}, label, input);
         };
         const modes = s.modes || MODES;
         this.modeInputs = MODES.map(name => {
-            const input = make("input", {type: "checkbox", value: name, checked: modes.includes(name)});
-            input.addEventListener("change", () => this.changeModes(input));
+            const input = make("input", {type: "checkbox", value: name, checked: modes.includes(name),
+                                         onchange: () => this.changeModes(input)});
             return input;
         });
         this.list = make("ol");
@@ -217,8 +214,8 @@ export class Notes {
 
     row(note, i)
     {
-        const remove = button("✕", () => this.change({notes: this.settings.notes.filter(n => n !== note)}));
-        remove.setAttribute("aria-label", text.notes.remove(note.title));
+        const remove = button("✕", () => this.change({notes: this.settings.notes.filter(n => n !== note)}),
+                              {label: text.notes.remove(note.title)});
         return make("li", {className: "row"}, button(note.title, () => this.open(i)), remove);
     }
 

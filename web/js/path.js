@@ -21,14 +21,12 @@ export class PathEditor {
         this.element = byId("path");
         this.element.setAttribute("aria-label", text.path.title);
         this.list = make("ol");
-        this.seconds = make("input", {type: "number", min: 0.5, max: 3600, step: 0.5, value: 0});
-        this.seconds.addEventListener("change", () => this.setDuration(Number(this.seconds.value)));
-        this.scrubber = make("input", {type: "range", min: 0, max: 1, step: 0.001, value: 0});
-        this.scrubber.setAttribute("aria-label", text.path.scrub);
-        this.scrubber.addEventListener("input", () => this.show(Number(this.scrubber.value)));
+        this.seconds = make("input", {type: "number", min: 0.5, max: 3600, step: 0.5, value: 0,
+                                      onchange: () => this.setDuration(Number(this.seconds.value))});
+        this.scrubber = make("input", {type: "range", min: 0, max: 1, step: 0.001, value: 0, label: text.path.scrub,
+                                       oninput: () => this.show(Number(this.scrubber.value))});
         this.playing = button(text.path.play, () => this.play());
-        this.said = make("p");
-        this.said.setAttribute("role", "status");
+        this.said = make("p", {role: "status"});
         this.saving = [
             button(t.saveOriel, () => save(`${name()}.path.json`, orielPath(this.keys, this.duration))),
             button(t.saveNerfstudio,
@@ -62,13 +60,13 @@ export class PathEditor {
     // A button that asks for a file, whose path takes the place of this one.
     loading()
     {
-        const file = make("input", {type: "file", accept: ".json,application/json", hidden: true});
-        file.addEventListener("change", async () => {
+        const onchange = async () => {
             const [chosen] = file.files;
             if (chosen)
                 this.load(chosen.name, await chosen.text());
             file.value = ""; // the same file may be chosen again
-        });
+        };
+        const file = make("input", {type: "file", accept: ".json,application/json", hidden: true, onchange});
         return [button(text.path.load, () => file.click()), file];
     }
 
@@ -87,10 +85,9 @@ export class PathEditor {
 
     addRendering(render)
     {
-        this.format = make("select", {}, ...["mp4", "png", "exr"].map(f => make("option", {textContent: f})));
-        this.format.setAttribute("aria-label", text.path.format);
-        this.bar = make("progress", {max: 1, value: 0, hidden: true});
-        this.bar.setAttribute("aria-label", text.path.rendering);
+        this.format = make("select", {label: text.path.format},
+                           ...["mp4", "png", "exr"].map(f => make("option", {textContent: f})));
+        this.bar = make("progress", {max: 1, value: 0, hidden: true, label: text.path.rendering});
         this.start = button(text.path.render,
                             () => render(orielPath(this.keys, this.duration), this.format.value));
         this.saving.push(this.start);
@@ -133,28 +130,19 @@ export class PathEditor {
 
     row(key, i)
     {
-        const t = text.path, fov = make("input", {type: "number", min: 5, max: 150, step: 1,
-                                                  value: viewToKey(key).fov_y_deg.toFixed(0)});
-        fov.setAttribute("aria-label", t.fov(i + 1));
-        fov.title = t.fov(i + 1);
-        fov.addEventListener("change", () => this.change(keys => {
-            keys[i] = {...(viewFromKey({...viewToKey(key), fov_y_deg: Number(fov.value)}, key.frame) || key),
-                       seconds: key.seconds};
-        }));
-        const seconds = make("input", {type: "number", min: 0.1, max: 3600, step: 0.1, title: t.speed(i + 1),
-                                       value: Number(secondsFrom(key).toFixed(2)), className: "seconds"});
-        seconds.setAttribute("aria-label", t.speed(i + 1));
-        seconds.disabled = i === this.keys.length - 1;
-        seconds.addEventListener("change", () => this.change(keys => {
-            keys[i] = {...key, seconds: Math.min(Math.max(Number(seconds.value) || 0, 0.1), 3600)};
-        }));
-        const small = (sign, label, run, off = false) => {
-            const b = button(sign, run);
-            b.setAttribute("aria-label", label);
-            b.title = label;
-            b.disabled = off;
-            return b;
+        const t = text.path, last = i === this.keys.length - 1;
+        const number = (label, more, edit) => {
+            const onchange = () => this.change(keys => keys[i] = edit(Number(input.value)));
+            const input = make("input", {type: "number", label, title: label, ...more, onchange});
+            return input;
         };
+        const degrees = {min: 5, max: 150, step: 1, value: viewToKey(key).fov_y_deg.toFixed(0)};
+        const fov = number(t.fov(i + 1), degrees, value =>
+            ({...(viewFromKey({...viewToKey(key), fov_y_deg: value}, key.frame) || key), seconds: key.seconds}));
+        const times = {min: 0.1, max: 3600, step: 0.1, value: Number(secondsFrom(key).toFixed(2))};
+        const seconds = number(t.speed(i + 1), {...times, className: "seconds", disabled: last}, value =>
+            ({...key, seconds: Math.min(Math.max(value || 0, 0.1), 3600)}));
+        const small = (sign, label, run, disabled = false) => button(sign, run, {label, title: label, disabled});
         const swap = by => () => this.change(keys => [keys[i], keys[i + by]] = [keys[i + by], keys[i]]);
         return make("li", {className: "row"},
                     button(t.key(i + 1), () => {
@@ -165,7 +153,7 @@ export class PathEditor {
                         keys[i] = {...this.navigator.view, seconds: key.seconds};
                     })),
                     small("↑", t.up(i + 1), swap(-1), i === 0),
-                    small("↓", t.down(i + 1), swap(1), i === this.keys.length - 1),
+                    small("↓", t.down(i + 1), swap(1), last),
                     small("✕", t.remove(i + 1), () => this.change(keys => keys.splice(i, 1))));
     }
 

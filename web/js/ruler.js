@@ -11,8 +11,7 @@ export class Ruler {
     {
         Object.assign(this, {unit, pick, save, wake});
         this.line = byId("line");
-        this.said = make("p", {id: "length"});
-        this.said.setAttribute("role", "status");
+        this.said = make("p", {id: "length", role: "status"});
         this.element = byId("ruler");
         this.element.setAttribute("aria-label", text.actions.ruler);
         this.element.append(make("h2", {textContent: text.actions.ruler}), this.said,

@@ -1,5 +1,6 @@
 // The time of a sequence: which time step shows, and the bar that plays it.
 import {text} from "./strings.js";
+import {button, make} from "./ui.js";
 
 const RATE = 25; // time steps a second at normal speed
 const SPEEDS = [0.25, 0.5, 1, 2];
@@ -9,35 +10,23 @@ export class TimeSteps {
     constructor(count, bar, onChange)
     {
         Object.assign(this, {count, onChange, timeStep: 0, playing: false, loops: true, speed: 1});
-        this.button = this.add(bar, "button", {type: "button", onclick: () => this.toggle()});
-        this.add(bar, "button", {type: "button", textContent: "\u2039", title: text.timeSteps.back,
-                                 onclick: () => this.show(this.timeStep - 1)});
-        this.add(bar, "button", {type: "button", textContent: "\u203a", title: text.timeSteps.forth,
-                                 onclick: () => this.show(this.timeStep + 1)});
-        this.slider = this.add(bar, "input", {type: "range", min: 0, max: count - 1, step: 1, value: 0,
-                                              title: text.timeSteps.slider,
-                                              oninput: () => this.show(Number(this.slider.value))});
-        this.place = this.add(bar, "output", {});
-        const speed = this.add(bar, "select", {title: text.timeSteps.speed, onchange: () => {
+        const t = text.timeSteps;
+        this.button = button("", () => this.toggle());
+        this.slider = make("input", {type: "range", min: 0, max: count - 1, step: 1, value: 0, title: t.slider,
+                                     oninput: () => this.show(Number(this.slider.value))});
+        this.place = make("output");
+        const speed = make("select", {title: t.speed, onchange: () => {
             this.speed = Number(speed.value);
             this.restart();
+        }}, ...SPEEDS.map(value => make("option", {value, textContent: `${value}\u00d7`, selected: value === 1})));
+        const loop = make("input", {type: "checkbox", checked: true, onchange: () => {
+            this.loops = loop.checked;
         }});
-        for (const value of SPEEDS)
-            this.add(speed, "option", {value, textContent: `${value}\u00d7`, selected: value === 1});
-        const loop = this.add(this.add(bar, "label", {}), "input", {
-            type: "checkbox", checked: true, onchange: () => {
-                this.loops = loop.checked;
-            }});
-        loop.after(text.timeSteps.loop);
+        bar.append(this.button, button("\u2039", () => this.show(this.timeStep - 1), {title: t.back}),
+                   button("\u203a", () => this.show(this.timeStep + 1), {title: t.forth}), this.slider,
+                   this.place, speed, make("label", {}, loop, t.loop));
         bar.hidden = false;
         this.tell();
-    }
-
-    add(parent, name, properties)
-    {
-        const element = Object.assign(document.createElement(name), properties);
-        parent.append(element);
-        return element;
     }
 
     toggle()

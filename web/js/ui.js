@@ -5,19 +5,19 @@ import {frameHeight} from "./view.js";
 
 export const byId = id => document.getElementById(id);
 
-export function make(tag, properties = {}, ...children)
+// label, role: what assistive technology is told. Properties such as onclick are handlers.
+export function make(tag, {label, role, ...properties} = {}, ...children)
 {
     const element = Object.assign(document.createElement(tag), properties);
+    for (const [name, value] of [["aria-label", label], ["role", role]])
+        if (value)
+            element.setAttribute(name, value);
     element.append(...children);
     return element;
 }
 
-export function button(label, run)
-{
-    const element = make("button", {type: "button", textContent: label});
-    element.addEventListener("click", run);
-    return element;
-}
+export const button = (textContent, onclick, more = {}) =>
+    make("button", {type: "button", textContent, onclick, ...more});
 
 // Offers a Blob, or a value as JSON, as a file to keep.
 export function save(name, what)
@@ -57,9 +57,8 @@ export class Tools {
     add(id, action)
     {
         const label = `${text.actions[id]} (${action.key.toUpperCase()})`;
-        const button = make("button", {type: "button", title: label, id: `tool-${id}`}, icon(id));
-        button.setAttribute("aria-label", label);
-        button.addEventListener("click", action.run);
+        const more = {type: "button", title: label, label, id: `tool-${id}`, onclick: action.run};
+        const button = make("button", more, icon(id));
         byId("tools").append(button);
         this.count++;
         if (action.pressed)
@@ -98,14 +97,13 @@ export class Panel {
             this.figures[id] = make("dd", {id: `figure-${id}`});
             list.append(make("dt", {textContent: label}), this.figures[id]);
         }
-        const exposure = make("input", {type: "range", min: -6, max: 6, step: 0.1, value: 0});
         const stops = make("output", {textContent: text.stops(0)});
-        exposure.addEventListener("input", () => {
+        const exposure = make("input", {type: "range", min: -6, max: 6, step: 0.1, value: 0, oninput: () => {
             stops.textContent = text.stops(Number(exposure.value));
             onExposure(Number(exposure.value));
-        });
-        const curve = this.curve = make("select", {}, ...tones.map(t => make("option", {textContent: t.name, title: t.description})));
-        curve.addEventListener("change", () => onTone(curve.value));
+        }});
+        const curve = this.curve = make("select", {onchange: () => onTone(curve.value)},
+                                        ...tones.map(t => make("option", {textContent: t.name, title: t.description})));
         this.details = make("div");
         this.element.setAttribute("aria-label", text.actions.panel);
         this.element.append(this.layers,
@@ -120,11 +118,8 @@ export class Panel {
     // What can be chosen from, which depends on who draws.
     setLayers(layers, layer)
     {
-        this.choices = layers.map((id, i) => {
-            const input = make("input", {type: "radio", name: "layer", value: id, checked: i === layer});
-            input.addEventListener("change", () => this.onLayer(i));
-            return input;
-        });
+        this.choices = layers.map((id, i) => make("input", {
+            type: "radio", name: "layer", value: id, checked: i === layer, onchange: () => this.onLayer(i)}));
         this.layers.replaceChildren(
             make("legend", {textContent: text.layerLegend}),
             ...this.choices.map((input, i) => make("label", {}, input, text.layers[layers[i]])));
@@ -135,13 +130,9 @@ export class Panel {
     drawers(onDrawer)
     {
         const {legend, ...names} = text.drawers;
-        this.drawer = Object.fromEntries(Object.keys(names).map((id, i) => {
-            const input = make("input", {type: "radio", name: "drawer", value: id, checked: i === 0});
-            input.addEventListener("change", () => onDrawer(id));
-            return [id, input];
-        }));
-        this.drawerSaid = make("p", {className: "small"});
-        this.drawerSaid.setAttribute("role", "status");
+        this.drawer = Object.fromEntries(Object.keys(names).map((id, i) => [id, make("input", {
+            type: "radio", name: "drawer", value: id, checked: i === 0, onchange: () => onDrawer(id)})]));
+        this.drawerSaid = make("p", {className: "small", role: "status"});
         return [make("fieldset", {}, make("legend", {textContent: legend}),
                      ...Object.entries(names).map(([id, name]) => make("label", {}, this.drawer[id], name))),
                 this.drawerSaid];
@@ -178,9 +169,8 @@ export class Thumbs {
         this.buttons = photos.map(photo => {
             const image = make("img", {alt: "", loading: "lazy", width: 64 * photo.width / photo.height,
                                        height: 64});
-            const button = make("button", {type: "button", title: photo.name}, image);
-            button.setAttribute("aria-label", text.thumb(photo.number + 1, photo.name));
-            button.addEventListener("click", () => goTo(photo));
+            const button = make("button", {type: "button", title: photo.name, onclick: () => goTo(photo),
+                                           label: text.thumb(photo.number + 1, photo.name)}, image);
             return {button, image, file: photo.thumb.file};
         });
         this.files = files;
@@ -282,10 +272,8 @@ export function buildHelp()
     const fingersAlone = matchMedia("(any-pointer: coarse)").matches && !matchMedia("(any-pointer: fine)").matches;
     for (const [keys, what] of fingersAlone ? text.touch : text.help)
         list.append(make("dt", {textContent: keys}), make("dd", {textContent: what}));
-    const close = make("button", {type: "button", textContent: text.close});
-    close.addEventListener("click", () => dialog.close());
     dialog.setAttribute("aria-label", text.helpTitle);
-    dialog.append(title, list, make("p", {textContent: text.helpShare}), close);
+    dialog.append(title, list, make("p", {textContent: text.helpShare}), button(text.close, () => dialog.close()));
     return {
         // The heading takes the focus: the button would scroll the dialog to its end. Browsers refuse
         // the attribute "autofocus" in a page within another one's frame, with a warning.
