@@ -181,13 +181,11 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
 {
     struct job job = {.log = log, .progress = progress, .params = params};
     struct orl_new_dir dir;
-    enum orl_result result = orl_figures_check(log, params);
-    if (result == ORL_OK)
-        result = orl_new_dir_begin(log, out, &dir);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_figures_check(log, params));
+    ORL_TRY(orl_new_dir_begin(log, out, &dir));
     struct orl_view *views = orl_array(log, (size_t)params->cameras, sizeof *views);
     job.dir = dir.path;
+    enum orl_result result = ORL_OK;
     if (!views) {
         result = ORL_ERR_MEMORY;
         goto end;

@@ -104,20 +104,16 @@ static enum orl_result write_truth(const struct job *job, int index,
     static const char *const colour[] = {"R", "G", "B"};
     static const char *const depth[] = {"depth.Z"};
     static const char *const normal[] = {"normal.X", "normal.Y", "normal.Z"};
-    enum orl_result result = write_layers(job, index, "radiance", &frame->radiance, colour, true);
-    if (result == ORL_OK)
-        result = write_layers(job, index, "depth", &frame->depth, depth, false);
-    if (result == ORL_OK)
-        result = write_layers(job, index, "normal", &frame->normal, normal, true);
-    if (result == ORL_OK)
-        result = write_map(job, index, "stereo/depth_maps", &frame->depth);
-    if (result == ORL_OK)
-        result = write_map(job, index, "stereo/normal_maps", &frame->normal);
-    if (result == ORL_OK && frame->textured.data)
-        result = write_map(job, index, "stereo/texture_maps", &frame->textured);
-    if (result == ORL_OK && frame->vehicle.data)
-        result = write_mask(job, index, &frame->vehicle);
-    return result;
+    ORL_TRY(write_layers(job, index, "radiance", &frame->radiance, colour, true));
+    ORL_TRY(write_layers(job, index, "depth", &frame->depth, depth, false));
+    ORL_TRY(write_layers(job, index, "normal", &frame->normal, normal, true));
+    ORL_TRY(write_map(job, index, "stereo/depth_maps", &frame->depth));
+    ORL_TRY(write_map(job, index, "stereo/normal_maps", &frame->normal));
+    if (frame->textured.data)
+        ORL_TRY(write_map(job, index, "stereo/texture_maps", &frame->textured));
+    if (frame->vehicle.data)
+        ORL_TRY(write_mask(job, index, &frame->vehicle));
+    return ORL_OK;
 }
 
 // --- cameras ---
@@ -237,14 +233,10 @@ static enum orl_result write_summary(const struct job *job)
 
 static enum orl_result write_cameras(const struct job *job)
 {
-    enum orl_result result = write_colmap_cameras(job);
-    if (result == ORL_OK)
-        result = write_colmap_images(job);
-    if (result == ORL_OK)
-        result = write_inria_cameras(job);
-    if (result == ORL_OK)
-        result = write_summary(job);
-    return result;
+    ORL_TRY(write_colmap_cameras(job));
+    ORL_TRY(write_colmap_images(job));
+    ORL_TRY(write_inria_cameras(job));
+    return write_summary(job);
 }
 
 // --- folders ---

@@ -46,9 +46,7 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
 {
     *out = NULL;
     const struct orl_log *log = orl_gpu_log(gpu);
-    enum orl_result result = orl_synth_check(log, params);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_synth_check(log, params));
     struct orl_synth *synth = orl_array(log, 1, sizeof *synth);
     if (!synth)
         return ORL_ERR_MEMORY;
@@ -61,7 +59,7 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
              params->gloss > 0 ? "GLOSS 1\n" : "", params->bars_m > 0 ? "BARS 1\n" : "",
              params->plain > 0 ? "PLAIN 1\n" : "", params->vehicle ? "VEHICLE 1\n" : "");
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
-    result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
+    enum orl_result result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
     if (result == ORL_OK)
         result = create_target(gpu, "synth radiance", params->width, params->height, GL_RGBA32F,
                                &synth->radiance);

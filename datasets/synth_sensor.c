@@ -77,10 +77,7 @@ enum orl_result orl_synth_expose(const struct orl_log *log, const struct orl_ima
 {
     memset(photo, 0, sizeof *photo);
     ORL_REQUIRE(log, radiance->type == ORL_PIXEL_F32 && radiance->channels == 3);
-    enum orl_result result = orl_image_init(log, photo, radiance->width, radiance->height, 3,
-                                            ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, photo, radiance->width, radiance->height, 3, ORL_PIXEL_U8));
     double scale[3];
     for (int c = 0; c < 3; c++)
         scale[c] = exp2(sensor->exposure_ev + sensor->drift_ev[c]);

@@ -46,9 +46,7 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
                                      const struct orl_names *names)
 {
     const struct orl_colmap_model *model;
-    enum orl_result result = orl_job_sparse(job, &model);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_sparse(job, &model));
     bool *seen = orl_array(job->log, model->point_count, sizeof *seen);
     if (!seen)
         return ORL_ERR_MEMORY;
@@ -217,12 +215,9 @@ static enum orl_result choose_densifier(struct orl_job *job, bool *use_colmap)
 // Leaves SCENE/stereo with this job's key and COLMAP's lists, and maps only if they have that key.
 static enum orl_result open_stereo(struct orl_job *job, struct orl_names *train)
 {
-    enum orl_result result = orl_job_train_names(job, train);
-    if (result == ORL_OK)
-        result = begin_stereo(job);
-    if (result == ORL_OK)
-        result = write_stereo_lists(job, train);
-    return result;
+    ORL_TRY(orl_job_train_names(job, train));
+    ORL_TRY(begin_stereo(job));
+    return write_stereo_lists(job, train);
 }
 
 enum orl_result orl_stage_densify_begin(struct orl_job *job)

@@ -38,17 +38,14 @@ static enum orl_result fill_points(struct import_job *job, size_t *count)
 static enum orl_result fill(struct import_job *job)
 {
     size_t points = 0, triangles = 0;
-    enum orl_result result = orl_import_pictures(job);
+    ORL_TRY(orl_import_pictures(job));
     // Bad silhouettes for the hull must be reported before the long work.
-    if (result == ORL_OK)
-        result = orl_import_write_mesh(job, &triangles);
-    if (result == ORL_OK)
-        result = fill_points(job, &points);
-    if (result == ORL_OK)
-        result = job->params->points == ORL_IMPORT_DENSIFY
-                     ? orl_import_complete_manifest(job, triangles)
-                     : orl_import_write_manifest(job, points, triangles);
-    return result == ORL_OK ? orl_new_dir_finish(job->log, &job->new_dir) : result;
+    ORL_TRY(orl_import_write_mesh(job, &triangles));
+    ORL_TRY(fill_points(job, &points));
+    ORL_TRY(job->params->points == ORL_IMPORT_DENSIFY
+                ? orl_import_complete_manifest(job, triangles)
+                : orl_import_write_manifest(job, points, triangles));
+    return orl_new_dir_finish(job->log, &job->new_dir);
 }
 
 static void finish(struct import_job *job)

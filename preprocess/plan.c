@@ -161,10 +161,8 @@ static enum orl_result read_scene(struct planner *p, int photographs)
     if (!p->pixels || !p->reads)
         return ORL_ERR_MEMORY;
     p->max_ram = p->params.max_ram_bytes ? (double)p->params.max_ram_bytes : (double)INFINITY;
-    result = orl_fuse_clusters(p->log, &p->model, &p->photos, p->params.fuse_cluster, p->max_ram,
-                               &p->clusters);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_fuse_clusters(p->log, &p->model, &p->photos, p->params.fuse_cluster, p->max_ram,
+                              &p->clusters));
     for (size_t i = 0; i < count; i++) {
         const struct orl_colmap_image *image =
             orl_colmap_image_by_name(&p->model, p->photos.items[i]);

@@ -521,9 +521,7 @@ static json_t *recorded_arguments(const struct orl_prepare_params *params)
 
 enum orl_result orl_stages_begin(struct orl_job *job, double wall_s)
 {
-    enum orl_result result = set_keys(job);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(set_keys(job));
     json_object_set_new(done_stages(job), "collect",
                         json_pack("{s:s, s:f, s:o, s:O}", "key", job->keys[ORL_STAGE_COLLECT],
                                   "wall_s", wall_s, "photographs", photo_hashes(job), "skipped",

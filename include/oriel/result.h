@@ -24,6 +24,20 @@ enum orl_result {
     ORL_RESULT_COUNT
 };
 
+// Passes an error on: returns the code of `call` unless it is ORL_OK.
+#define ORL_TRY(call)                                                     \
+    do {                                                                  \
+        const enum orl_result result_of_call = (call);                    \
+        if (result_of_call != ORL_OK)                                     \
+            return result_of_call;                                        \
+    } while (0)
+// The next step of a function that cleans up at its end: done unless a step before it has failed.
+#define ORL_THEN(result, call)                                            \
+    do {                                                                  \
+        if ((result) == ORL_OK)                                           \
+            (result) = (call);                                            \
+    } while (0)
+
 // The code's name, such as "ORL_ERR_IO"; "unknown" outside the table.
 const char *orl_result_name(enum orl_result result);
 // The code's default message, such as "cannot read or write a file"; "unknown" outside the table.

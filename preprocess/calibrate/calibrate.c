@@ -285,8 +285,8 @@ static enum orl_result match_all(struct calibration *c)
     if (c->way == ORL_MATCHING_EXHAUSTIVE || enough(c))
         return ORL_OK;
     say(c, "matching all pairs");
-    enum orl_result result = orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, &pairs);
-    return result == ORL_OK ? map(c, false, NULL) : result;
+    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, &pairs));
+    return map(c, false, NULL);
 }
 
 static enum orl_result try_hard(struct calibration *c)
@@ -381,9 +381,7 @@ static enum orl_result fail_to_place(const struct calibration *c)
 {
     const struct orl_job *job = c->job;
     size_t views;
-    enum orl_result result = orl_count_views(job, 3, &views);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_count_views(job, 3, &views));
     const char *why =
         views < 2 ? "all show one view, as of a camera that stood still, and tell no depth: take "
                     "them from different positions, a step or two from one to the next"

@@ -12,9 +12,7 @@ static enum orl_result undistort(struct orl_job *job, const struct orl_colmap_mo
                                  const struct orl_image *picture, struct orl_image *out)
 {
     const struct orl_colmap_model *from;
-    enum orl_result result = orl_job_calibrated(job, &from);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_calibrated(job, &from));
     const struct orl_colmap_image *was = orl_colmap_image_by_name(from, image->name);
     if (!was)
         return orl_fail(job->log, ORL_ERR_DATA, "%s: not in the calibrated model", image->name);

@@ -305,10 +305,8 @@ static bool has_rigs(sqlite3 *handle)
 // Runs `sql` on the attached database, at once or not at all.
 static enum orl_result add_part(struct orl_database *db, const char *path, const char *sql)
 {
-    enum orl_result result = attach(db, path);
-    if (result != ORL_OK)
-        return result;
-    result = run_sql(db, "BEGIN");
+    ORL_TRY(attach(db, path));
+    enum orl_result result = run_sql(db, "BEGIN");
     if (result == ORL_OK)
         result = run_sql(db, sql);
     if (result == ORL_OK)
@@ -349,32 +347,27 @@ enum orl_result orl_database_add_photographs(struct orl_database *db, const char
 // The photograph `name` goes to the rig of the camera that it has.
 static enum orl_result share_rig(struct orl_database *db, const char *name)
 {
-    enum orl_result result = run_with_text(
+    ORL_TRY(run_with_text(
         db, "UPDATE frame_data SET sensor_id = (SELECT camera_id FROM images "
             "WHERE image_id = data_id) "
-            "WHERE data_id = (SELECT image_id FROM images WHERE name = ?)", name, NULL);
-    if (result == ORL_OK)
-        result = run_with_text(
-            db, "UPDATE frames SET rig_id = (SELECT rig_id FROM rigs WHERE ref_sensor_id = "
-                "(SELECT camera_id FROM images WHERE name = ?1)) "
-                "WHERE frame_id = (SELECT frame_id FROM frame_data WHERE data_id = "
-                "(SELECT image_id FROM images WHERE name = ?1))", name, NULL);
-    return result == ORL_OK ? run_sql(db, "DELETE FROM rigs WHERE rig_id NOT IN "
-                                          "(SELECT rig_id FROM frames)")
-                            : result;
+            "WHERE data_id = (SELECT image_id FROM images WHERE name = ?)", name, NULL));
+    ORL_TRY(run_with_text(
+        db, "UPDATE frames SET rig_id = (SELECT rig_id FROM rigs WHERE ref_sensor_id = "
+            "(SELECT camera_id FROM images WHERE name = ?1)) "
+            "WHERE frame_id = (SELECT frame_id FROM frame_data WHERE data_id = "
+            "(SELECT image_id FROM images WHERE name = ?1))", name, NULL));
+    return run_sql(db, "DELETE FROM rigs WHERE rig_id NOT IN (SELECT rig_id FROM frames)");
 }
 
 enum orl_result orl_database_share_camera(struct orl_database *db, const char *first,
                                           const char *name)
 {
-    enum orl_result result = run_with_text(
+    ORL_TRY(run_with_text(
         db, "UPDATE images SET camera_id = (SELECT camera_id FROM images WHERE name = ?) "
-            "WHERE name = ?", first, name);
-    if (result == ORL_OK && has_rigs(db->handle))
-        result = share_rig(db, name);
-    return result == ORL_OK ? run_sql(db, "DELETE FROM cameras WHERE camera_id NOT IN "
-                                          "(SELECT camera_id FROM images)")
-                            : result;
+            "WHERE name = ?", first, name));
+    if (has_rigs(db->handle))
+        ORL_TRY(share_rig(db, name));
+    return run_sql(db, "DELETE FROM cameras WHERE camera_id NOT IN (SELECT camera_id FROM images)");
 }
 
 enum orl_result orl_database_add_matches(struct orl_database *db, const char *path)

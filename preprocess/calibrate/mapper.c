@@ -61,9 +61,7 @@ enum orl_result orl_mapper_run(struct orl_job *job, const struct orl_mapper_run 
         [ORL_MAPPER_GLOBAL] = "global_mapper"};
     struct orl_colmap_args args = {0};
     enum orl_mapper mapper = run->from || run->loose ? ORL_MAPPER_INCREMENTAL : run->mapper;
-    enum orl_result result = common_settings(job, &args);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(common_settings(job, &args));
     orl_colmap_arg(&args, "--output_path", "%s", run->out);
     if (mapper == ORL_MAPPER_GLOBAL && run->straight)
         orl_colmap_arg(&args, "--GlobalMapper.ba_refine_extra_params", "0");
@@ -92,15 +90,11 @@ enum orl_result orl_mapper_refine(struct orl_job *job, const char *from, const c
                                   bool straight)
 {
     struct orl_colmap_args args = {0};
-    enum orl_result result = common_settings(job, &args);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(common_settings(job, &args));
     orl_colmap_arg(&args, "--input_path", "%s", from);
     orl_colmap_arg(&args, "--output_path", "%s", out);
-    result = orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "point_triangulator", .step = "mapping", .share = 1, .total = 1}, &args);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_colmap(job, &(struct orl_colmap_run){
+        .command = "point_triangulator", .step = "mapping", .share = 1, .total = 1}, &args));
     orl_colmap_arg(&args, "--input_path", "%s", out);
     orl_colmap_arg(&args, "--output_path", "%s", out);
     if (straight)

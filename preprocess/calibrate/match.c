@@ -227,12 +227,11 @@ enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guide
                           struct orl_match_summary *summary)
 {
     *summary = (struct orl_match_summary){0};
-    enum orl_result result = way == ORL_MATCHING_RETRIEVAL
-                                 ? match_retrieved(job, summary)
-                                 : match_by_colmap(job, way == ORL_MATCHING_SEQUENTIAL, guided);
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "matching", 1, 1, NULL);
-    return result;
+    ORL_TRY(way == ORL_MATCHING_RETRIEVAL
+                ? match_retrieved(job, summary)
+                : match_by_colmap(job, way == ORL_MATCHING_SEQUENTIAL, guided));
+    orl_progress_report(job->progress, "matching", 1, 1, NULL);
+    return ORL_OK;
 }
 
 enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)

@@ -310,10 +310,9 @@ static enum orl_result run_locked(const struct part *part)
         orl_logf(job->log, ORL_LOG_INFO, "%s/%s: done already", job->dir, part->final_db);
         return ORL_OK;
     }
-    enum orl_result result = orl_job_find_colmap(job);
-    if (result == ORL_OK)
-        result = steps[part->step](part);
-    return result == ORL_OK ? rename_in(job, part->temp_db, part->final_db) : result;
+    ORL_TRY(orl_job_find_colmap(job));
+    ORL_TRY(steps[part->step](part));
+    return rename_in(job, part->temp_db, part->final_db);
 }
 
 static enum orl_result run_part(struct orl_job *job, const struct orl_camera_groups *groups,

@@ -110,13 +110,9 @@ static enum orl_result take_points(struct orl_job *job, const struct orl_colmap_
 {
     const char *from = found->given ? "masks" : "dark backdrop";
     size_t before = points->count, first = before;
-    enum orl_result result = see_maps(job, model, found, hull);
-    if (result == ORL_OK)
-        result = orl_hull_points_end(job->log, hull, points, &first);
-    if (result == ORL_OK)
-        result = set_colors(job, found, first, points);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(see_maps(job, model, found, hull));
+    ORL_TRY(orl_hull_points_end(job->log, hull, points, &first));
+    ORL_TRY(set_colors(job, found, first, points));
     orl_logf(job->log, ORL_LOG_INFO, "fuse: the visual hull of %zu silhouettes (%s) closes "
              "surfaces by %zu points; %zu outside it are dropped", found->count, from,
              points->count - first, before - first);

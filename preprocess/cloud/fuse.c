@@ -20,10 +20,8 @@ enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_co
                                   struct orl_clusters *clusters)
 {
     size_t size = (size_t)asked;
-    enum orl_result result = asked ? ORL_OK
-                                   : orl_fuse_plan_size(log, model, train, CLUSTER_MAX, budget,
-                                                        &size);
-    return result == ORL_OK ? orl_clusters_make(log, model, train, size, clusters) : result;
+    ORL_TRY(asked ? ORL_OK : orl_fuse_plan_size(log, model, train, CLUSTER_MAX, budget, &size));
+    return orl_clusters_make(log, model, train, size, clusters);
 }
 
 // The size that an earlier run with these photographs and settings has chosen; 0: none.
@@ -43,10 +41,7 @@ enum orl_result orl_fuse_choose(struct orl_job *job, const struct orl_colmap_mod
     *size = max_ram ? 0 : chosen_before(job);
     if (*size)
         return ORL_OK;
-    enum orl_result result = orl_fuse_plan_size(job->log, model, train, CLUSTER_MAX,
-                                                orl_fuse_budget(max_ram), size);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_fuse_plan_size(job->log, model, train, CLUSTER_MAX, orl_fuse_budget(max_ram), size));
     json_t *chosen = json_pack("{s:s, s:I}", "key", job->keys[ORL_STAGE_FUSE], "cluster_size",
                                (json_int_t)*size);
     if (json_object_set_new(job->stages, "fusion", chosen) != 0)

@@ -291,9 +291,7 @@ static bool is_cut(const struct orl_hull *cube, const float position[3])
 static enum orl_result surface_points(const struct orl_log *log, const struct orl_hull *cube,
                                       const struct orl_mesh *mesh, struct orl_points *surface)
 {
-    enum orl_result result = orl_points_init(log, surface, mesh->vertex_count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_points_init(log, surface, mesh->vertex_count));
     surface->count = 0;
     for (size_t i = 0; i < mesh->vertex_count; i++)
         if (orl_point_usable(mesh->position[i]) && !is_cut(cube, mesh->position[i])) {
@@ -308,9 +306,7 @@ static enum orl_result take(const struct orl_log *log, const bool *taken, struct
                             struct orl_points *out)
 {
     size_t left = 0;
-    enum orl_result result = orl_points_init(log, out, points->count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_points_init(log, out, points->count));
     out->count = 0;
     for (size_t i = 0; i < points->count; i++)
         if (taken[i])

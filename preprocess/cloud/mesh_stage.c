@@ -75,11 +75,8 @@ static enum orl_result write_points(const struct orl_job *job, const char *to)
 static enum orl_result write_train_model(struct orl_job *job, const char *to)
 {
     const struct orl_colmap_model *model;
-    enum orl_result result = orl_job_sparse(job, &model);
-    if (result == ORL_OK)
-        result = orl_dir_make(job->log, to);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_sparse(job, &model));
+    ORL_TRY(orl_dir_make(job->log, to));
     struct orl_colmap_model train = *model;
     train.image_count = 0;
     train.images = orl_array(job->log, model->image_count, sizeof *train.images);
@@ -88,7 +85,7 @@ static enum orl_result write_train_model(struct orl_job *job, const char *to)
     for (size_t i = 0; i < model->image_count; i++)
         if (!orl_job_find(job, model->images[i].name)->test)
             train.images[train.image_count++] = model->images[i];
-    result = orl_colmap_write(job->log, to, &train);
+    enum orl_result result = orl_colmap_write(job->log, to, &train);
     free(train.images);
     return result;
 }

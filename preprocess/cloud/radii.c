@@ -22,9 +22,7 @@ static void viewers_finish(struct viewers *viewers)
 static enum orl_result find_viewers(struct orl_job *job, struct viewers *viewers)
 {
     const struct orl_colmap_model *model;
-    enum orl_result result = orl_job_sparse(job, &model);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_sparse(job, &model));
     viewers->views = orl_array(job->log, model->image_count, sizeof *viewers->views);
     viewers->centres = orl_array(job->log, model->image_count, sizeof *viewers->centres);
     if (!viewers->views || !viewers->centres)

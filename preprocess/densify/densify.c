@@ -123,12 +123,10 @@ static enum orl_result read_map(const struct densifier *d, const char *dir, size
 static enum orl_result write_maps(const struct densifier *d, size_t photo,
                                   const struct pass *pass, const struct densify_maps *maps)
 {
-    enum orl_result result = write_map(d, d->normal_dir, photo, pass, &maps->normal);
-    if (result == ORL_OK && pass == &d->passes[d->pass_count - 1])
-        result = write_map(d, d->confidence_dir, photo, pass, &maps->confidence);
-    if (result == ORL_OK)
-        result = write_map(d, d->depth_dir, photo, pass, &maps->depth);
-    return result;
+    ORL_TRY(write_map(d, d->normal_dir, photo, pass, &maps->normal));
+    if (pass == &d->passes[d->pass_count - 1])
+        ORL_TRY(write_map(d, d->confidence_dir, photo, pass, &maps->confidence));
+    return write_map(d, d->depth_dir, photo, pass, &maps->depth);
 }
 
 static enum orl_result has_maps(const struct densifier *d, size_t photo,
@@ -185,10 +183,7 @@ static enum orl_result make_seeds(const struct densifier *d, size_t photo, struc
     struct orl_view view = {.camera = orl_densify_level_camera(&job->reference->camera,
                                                                job->levels - 1),
                             .cam_from_world = job->view.cam_from_world};
-    enum orl_result result = orl_image_init(d->log, &job->seeds, luma->width, luma->height, 1,
-                                            ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(d->log, &job->seeds, luma->width, luma->height, 1, ORL_PIXEL_F32));
     size_t pixels = (size_t)luma->width * (size_t)luma->height, filled = 0;
     size_t width = (size_t)luma->width, height = (size_t)luma->height;
     float *seeds = job->seeds.f32;
@@ -251,10 +246,8 @@ static enum orl_result read_source_depth(const struct densifier *d, const struct
                                          size_t photo, int slot, struct densify_job *job)
 {
     struct orl_image *depth = &job->source_depths[slot];
-    enum orl_result result = read_map(d, d->depth_dir, photo, before, 1, depth);
-    if (result == ORL_OK)
-        result = check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
-    return result;
+    ORL_TRY(read_map(d, d->depth_dir, photo, before, 1, depth));
+    return check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
 }
 
 static enum orl_result job_open(const struct densifier *d, size_t photo, const struct pass *pass,
@@ -274,12 +267,11 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, const s
         .total = d->total,
     };
     orl_densify_cache_turn(d->cache);
-    enum orl_result result = orl_densify_cache_get(d->cache, photo, &job->reference);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_densify_cache_get(d->cache, photo, &job->reference));
     job->levels = level_count(job->reference->levels[0].width, job->reference->levels[0].height);
     if (pass->geometric || job->levels <= d->shrink)
         job->levels = d->shrink + 1;
+    enum orl_result result = ORL_OK;
     for (int k = 0; k < plan->count && result == ORL_OK; k++) {
         size_t source = plan->sources[k].photo;
         job->source_views[k] = d->photos.views[source];
@@ -323,14 +315,10 @@ static enum orl_result read_start(const struct densifier *d, size_t photo,
                                   const struct pass *before, const struct densify_job *job,
                                   struct densify_maps *start)
 {
-    enum orl_result result = read_map(d, d->depth_dir, photo, before, 1, &start->depth);
-    if (result == ORL_OK)
-        result = read_map(d, d->normal_dir, photo, before, 3, &start->normal);
-    if (result == ORL_OK)
-        result = check_size(d, job->name, job->reference, &start->depth);
-    if (result == ORL_OK)
-        result = check_size(d, job->name, job->reference, &start->normal);
-    return result;
+    ORL_TRY(read_map(d, d->depth_dir, photo, before, 1, &start->depth));
+    ORL_TRY(read_map(d, d->normal_dir, photo, before, 3, &start->normal));
+    ORL_TRY(check_size(d, job->name, job->reference, &start->depth));
+    return check_size(d, job->name, job->reference, &start->normal);
 }
 
 static enum orl_result process(struct densifier *d, size_t photo, const struct pass *pass)
@@ -583,12 +571,9 @@ static void close_densifier(struct densifier *d)
 static enum orl_result open_densifier(struct densifier *d, const char *workspace,
                                       const struct orl_names *photos)
 {
-    enum orl_result result = check_params(d->log, &d->params);
-    if (result == ORL_OK)
-        result = lock_workspace(d, workspace);
-    if (result == ORL_OK)
-        result = open_workspace(d, workspace, photos);
-    return result;
+    ORL_TRY(check_params(d->log, &d->params));
+    ORL_TRY(lock_workspace(d, workspace));
+    return open_workspace(d, workspace, photos);
 }
 
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,

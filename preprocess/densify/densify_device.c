@@ -158,9 +158,7 @@ static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densif
     const struct orl_image *luma = &job->reference->levels[level->number];
     struct orl_tex_params params = {.width = luma->width, .height = luma->height,
                                     .format = GL_RG8, .tag = "densify reference"};
-    enum orl_result result = orl_tex_create(gpu, &params, &level->reference);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_tex_create(gpu, &params, &level->reference));
     size_t count = (size_t)luma->width * (size_t)luma->height;
     uint8_t *pixels = orl_array(orl_gpu_log(gpu), count, 2);
     if (!pixels)
@@ -218,9 +216,7 @@ static enum orl_result upload_sources(struct densify_device *device, const struc
         params.height =
             luma->height + 2 * pad > params.height ? luma->height + 2 * pad : params.height;
     }
-    enum orl_result result = orl_tex_create(device->gpu, &params, &level->sources);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_tex_create(device->gpu, &params, &level->sources));
     uint32_t *quads = orl_array(orl_gpu_log(device->gpu),
                                 (size_t)params.width * (size_t)params.height, sizeof *quads);
     if (!quads)
@@ -246,9 +242,7 @@ static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct de
         params.width = depth->width > params.width ? depth->width : params.width;
         params.height = depth->height > params.height ? depth->height : params.height;
     }
-    enum orl_result result = orl_tex_create(gpu, &params, &level->source_depths);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_tex_create(gpu, &params, &level->source_depths));
     float *inverse = orl_array(orl_gpu_log(gpu), (size_t)params.width * (size_t)params.height,
                                sizeof *inverse);
     if (!inverse)
@@ -271,9 +265,7 @@ static enum orl_result upload_start(struct orl_gpu *gpu, const struct densify_jo
     const struct orl_image *depth = &job->start->depth, *normal = &job->start->normal;
     struct orl_tex_params params = {.width = depth->width, .height = depth->height,
                                     .format = GL_RGBA32F, .tag = "densify start"};
-    enum orl_result result = orl_tex_create(gpu, &params, &level->extra);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_tex_create(gpu, &params, &level->extra));
     size_t count = (size_t)depth->width * (size_t)depth->height;
     float *pixels = orl_array(orl_gpu_log(gpu), count, 4 * sizeof *pixels);
     if (!pixels)
@@ -292,10 +284,9 @@ static enum orl_result upload_seeds(struct orl_gpu *gpu, const struct densify_jo
 {
     struct orl_tex_params params = {.width = job->seeds.width, .height = job->seeds.height,
                                     .format = GL_R32F, .tag = "densify seeds"};
-    enum orl_result result = orl_tex_create(gpu, &params, &level->extra);
-    if (result == ORL_OK)
-        orl_tex_write(level->extra, 0, 0, GL_RED, GL_FLOAT, job->seeds.f32);
-    return result;
+    ORL_TRY(orl_tex_create(gpu, &params, &level->extra));
+    orl_tex_write(level->extra, 0, 0, GL_RED, GL_FLOAT, job->seeds.f32);
+    return ORL_OK;
 }
 
 // --- parameters ---
@@ -463,13 +454,9 @@ static enum orl_result level_open(struct densify_device *device, const struct de
                                   struct level *level)
 {
     set_block(device, job, level);
-    enum orl_result result = make_state(device->gpu, level, level->block.area[0],
-                                        level->block.area[1]);
-    if (result == ORL_OK)
-        result = upload_reference(device->gpu, job, level);
-    if (result == ORL_OK)
-        result = upload_sources(device, job, level);
-    return result;
+    ORL_TRY(make_state(device->gpu, level, level->block.area[0], level->block.area[1]));
+    ORL_TRY(upload_reference(device->gpu, job, level));
+    return upload_sources(device, job, level);
 }
 
 static int least(int a, int b)

@@ -10,10 +10,7 @@
 static enum orl_result halve(const struct orl_log *log, const struct orl_image *fine,
                              struct orl_image *coarse)
 {
-    enum orl_result result = orl_image_init(log, coarse, fine->width / 2, fine->height / 2, 1,
-                                            ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, coarse, fine->width / 2, fine->height / 2, 1, ORL_PIXEL_U8));
     size_t stride = (size_t)fine->width;
     for (int y = 0; y < coarse->height; y++) {
         const uint8_t *row = fine->u8 + 2 * (size_t)y * stride;
@@ -29,12 +26,11 @@ enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *
                                          struct densify_pyramid *pyramid)
 {
     memset(pyramid, 0, sizeof *pyramid);
-    enum orl_result result = orl_picture_read(log, path, 1, &pyramid->levels[0]);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_read(log, path, 1, &pyramid->levels[0]));
     const struct orl_image *picture = &pyramid->levels[0];
     pyramid->camera = orl_camera_resized(camera, picture->width, picture->height);
     pyramid->count = 1;
+    enum orl_result result = ORL_OK;
     while (pyramid->count < DENSIFY_LEVELS_MAX &&
            pyramid->levels[pyramid->count - 1].width >= 4 &&
            pyramid->levels[pyramid->count - 1].height >= 4) {

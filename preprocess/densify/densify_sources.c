@@ -299,10 +299,8 @@ enum orl_result orl_densify_part_sources(const struct orl_log *log,
 {
     struct densify_photos photos;
     struct densify_plan *plans = NULL;
-    enum orl_result result = orl_densify_photos_init(log, model, names, &photos);
-    if (result != ORL_OK)
-        return result;
-    result = orl_densify_plans_make(log, &photos, sources, &plans);
+    ORL_TRY(orl_densify_photos_init(log, model, names, &photos));
+    enum orl_result result = orl_densify_plans_make(log, &photos, sources, &plans);
     for (size_t i = 0; result == ORL_OK && i < photos.count; i++)
         for (int k = 0; k < plans[i].count; k++)
             reads[part_of(i, photos.count, (size_t)parts) * (size_t)parts +

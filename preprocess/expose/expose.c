@@ -110,9 +110,7 @@ static void set_cameras(struct exposing *e)
 static enum orl_result find_photos(struct exposing *e)
 {
     struct orl_job *job = e->job;
-    enum orl_result result = orl_job_sparse(job, &e->model);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_sparse(job, &e->model));
     e->photos = orl_array(job->log, e->model->image_count, sizeof *e->photos);
     e->exposures = orl_array(job->log, e->model->image_count, sizeof *e->exposures);
     if (!e->photos || !e->exposures)
@@ -297,10 +295,10 @@ static enum orl_result fit_responses(struct exposing *e)
         cameras = e->photos[i].camera >= cameras ? e->photos[i].camera + 1 : cameras;
     if (!e->responses)
         e->responses = orl_array(e->job->log, (size_t)cameras, sizeof *e->responses);
-    enum orl_result result = e->responses ? ORL_OK : ORL_ERR_MEMORY;
-    for (int camera = 0; result == ORL_OK && camera < cameras; camera++)
-        result = fit_camera(e, camera);
-    return result;
+    ORL_TRY(e->responses ? ORL_OK : ORL_ERR_MEMORY);
+    for (int camera = 0; camera < cameras; camera++)
+        ORL_TRY(fit_camera(e, camera));
+    return ORL_OK;
 }
 
 // Photographs of one camera of the model share their lens.

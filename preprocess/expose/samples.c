@@ -70,16 +70,15 @@ static enum orl_result make_pyramid(const struct orl_log *log,
                                     const struct orl_sample_photo *photo, struct pyramid *p)
 {
     const struct orl_camera *c = &photo->view.camera;
-    enum orl_result result = orl_picture_read(log, photo->path, 3, &p->image);
-    if (result == ORL_OK && (p->image.width != c->width || p->image.height != c->height))
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
-                          photo->path, p->image.width, p->image.height, c->width, c->height);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_read(log, photo->path, 3, &p->image));
+    if (p->image.width != c->width || p->image.height != c->height)
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
+                        photo->path, p->image.width, p->image.height, c->width, c->height);
     for (int v = 0; v < 256; v++)
         p->linear[v] = orl_srgb_decode((float)v / 255);
     p->width[0] = p->image.width;
     p->height[0] = p->image.height;
+    enum orl_result result = ORL_OK;
     for (p->levels = 1; result == ORL_OK && p->levels < LEVELS_MAX; p->levels++) {
         if (p->width[p->levels - 1] < 8 || p->height[p->levels - 1] < 8)
             break;
@@ -189,13 +188,9 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 3.0);
     if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
         return ORL_OK;
-    enum orl_result result = orl_grow(t->log, (void **)&t->items, &t->item_capacity,
-                                      t->count + 1, sizeof *t->items);
-    if (result == ORL_OK)
-        result = orl_grow(t->log, (void **)&t->item_points, &t->point_capacity, t->count + 1,
-                          sizeof *t->item_points);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(t->log, (void **)&t->items, &t->item_capacity, t->count + 1, sizeof *t->items));
+    ORL_TRY(orl_grow(t->log, (void **)&t->item_points, &t->point_capacity, t->count + 1,
+                     sizeof *t->item_points));
     item.r2 = (float)squared_radius(&view->camera, pixel);
     t->items[t->count] = item;
     t->item_points[t->count++] = (uint32_t)point;

@@ -388,9 +388,7 @@ static enum orl_result hold_out(struct import_job *job)
 {
     const struct orl_import_params *params = job->params;
     size_t test = 0;
-    enum orl_result result = orl_test_block_check(job->log, params->test_block, job->view_count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_test_block_check(job->log, params->test_block, job->view_count));
     for (int i = params->test_block.first; i < params->test_block.end; i++)
         job->views[i].test = true;
     for (size_t i = 0; uses_splits(job) && i < job->view_count; i++)

@@ -88,15 +88,12 @@ static enum orl_result add_line(const struct orl_log *log, const char *path, int
                    : orl_fail(log, ORL_ERR_FORMAT,
                               "%s: line %d: neither NAME,TIME,APERTURE,ISO nor NAME,EV", path,
                               number);
-    enum orl_result result = orl_grow(log, (void **)&list->items, capacity, list->count + 1,
-                                      sizeof *list->items);
-    if (result == ORL_OK)
-        entry.name = orl_strdup(log, fields[0]);
-    if (result == ORL_OK && !entry.name)
-        result = ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        list->items[list->count++] = entry;
-    return result;
+    ORL_TRY(orl_grow(log, (void **)&list->items, capacity, list->count + 1, sizeof *list->items));
+    entry.name = orl_strdup(log, fields[0]);
+    if (!entry.name)
+        return ORL_ERR_MEMORY;
+    list->items[list->count++] = entry;
+    return ORL_OK;
 }
 
 enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *path,

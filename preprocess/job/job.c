@@ -34,10 +34,9 @@ static enum orl_result fail_there(const struct orl_job *job)
 static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
 {
     struct orl_names names = {0};
-    enum orl_result result = orl_dir_list(job->log, job->dir, &names);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_dir_list(job->log, job->dir, &names));
     bool ours = orl_names_contain(&names, ".oriel");
+    enum orl_result result = ORL_OK;
     if (names.count && !ours)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT,
                           "%s: not empty, and not made by oriel prepare; choose another folder",
@@ -75,14 +74,12 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
     static const char *const dirs[] = {".oriel", "logs"};
     *job = (struct orl_job){.log = log, .params = params, .progress = progress, .lock_fd = -1,
                             .linear_scale = 1, .skipped = json_array()};
-    enum orl_result result = job->skipped ? orl_dir_make(log, params->out) : ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(job->skipped ? orl_dir_make(log, params->out) : ORL_ERR_MEMORY);
     job->dir = realpath(params->out, NULL);
     if (!job->dir)
         return orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
     bool empty = false;
-    result = claim_folder(job, &empty);
+    enum orl_result result = claim_folder(job, &empty);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
         char *path = orl_job_path(job, "%s", dirs[i]);
         result = path ? orl_dir_make(log, path) : ORL_ERR_MEMORY;

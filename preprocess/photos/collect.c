@@ -272,9 +272,7 @@ static enum orl_result choose_test(struct orl_job *job)
 {
     const struct orl_prepare_params *params = job->params;
     size_t held_out = 0;
-    enum orl_result result = orl_test_block_check(job->log, params->test_block, job->source_count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_test_block_check(job->log, params->test_block, job->source_count));
     for (int i = params->test_block.first; i < params->test_block.end; i++)
         job->sources[i].test = true;
     for (size_t i = 0; params->test_every && i < job->source_count; i += (size_t)params->test_every)

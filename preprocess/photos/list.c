@@ -255,18 +255,17 @@ static enum orl_result add_input(struct orl_job *job, const char *input)
         return is_video_name(orl_path_name(input)) && orl_path_is_file(input)
                    ? add_video(job, input, orl_path_name(input))
                    : add_photo(job, input, orl_path_name(input));
-    enum orl_result result = add_folder(job, input, "", NULL);
-    if (result == ORL_OK && job->given == before)
-        result = orl_fail(job->log, ORL_ERR_NOT_FOUND,
-                          "%s: no photograph here or in its sub-folders (JPEG, PNG, TIFF, EXR, "
-                          "HEIC, AVIF or RAW files), and no video", input);
-    return result;
+    ORL_TRY(add_folder(job, input, "", NULL));
+    if (job->given == before)
+        return orl_fail(job->log, ORL_ERR_NOT_FOUND,
+                        "%s: no photograph here or in its sub-folders (JPEG, PNG, TIFF, EXR, "
+                        "HEIC, AVIF or RAW files), and no video", input);
+    return ORL_OK;
 }
 
 enum orl_result orl_photos_list(struct orl_job *job)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < job->params->input_count; i++)
-        result = add_input(job, job->params->inputs[i]);
-    return result;
+    for (size_t i = 0; i < job->params->input_count; i++)
+        ORL_TRY(add_input(job, job->params->inputs[i]));
+    return ORL_OK;
 }

@@ -103,17 +103,12 @@ static enum orl_result take_mask(const struct orl_job *job, struct orl_source *s
 {
     int width, height;
     bool empty;
-    enum orl_result result = orl_file_hash(job->log, path, &source->mask_hash);
-    if (result == ORL_OK)
-        result = orl_picture_size(job->log, path, &width, &height);
-    if (result == ORL_OK && (width != source->width || height != source->height))
-        result = orl_fail(job->log, ORL_ERR_DATA, "%s: %dx%d pixels, but its photograph %s has "
-                          "%dx%d", path, width, height, source->name, source->width,
-                          source->height);
-    if (result == ORL_OK)
-        result = copy_mask(job, source, path, &empty);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_file_hash(job->log, path, &source->mask_hash));
+    ORL_TRY(orl_picture_size(job->log, path, &width, &height));
+    if (width != source->width || height != source->height)
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: %dx%d pixels, but its photograph %s has %dx%d", path,
+                        width, height, source->name, source->width, source->height);
+    ORL_TRY(copy_mask(job, source, path, &empty));
     counts->found++;
     if (empty && !counts->empty++)
         counts->first_empty = source->given;

@@ -181,9 +181,7 @@ static enum orl_result make_frames(struct clip *clip, const char *dir)
 static enum orl_result name_folder(const struct orl_job *job, const char *path, char **dir)
 {
     uint64_t hash;
-    enum orl_result result = orl_file_hash(job->log, path, &hash);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_file_hash(job->log, path, &hash));
     *dir = job->params->frames
                ? orl_job_path(job, ".oriel/frames/%016" PRIx64 "-%d-n%d", hash, VERSION,
                               job->params->frames)

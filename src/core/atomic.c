@@ -226,14 +226,12 @@ enum orl_result orl_file_write(const struct orl_log *log, const char *path, cons
                                size_t size)
 {
     struct orl_atomic_file file;
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_atomic_begin(log, path, &file));
     FILE *stream = orl_atomic_stream(&file);
     bool ok = stream && fwrite(data, 1, size, stream) == size;
     if (stream && fclose(stream) != 0)
         ok = false;
-    result = ok ? orl_atomic_commit(log, &file) : fail_errno(log, path);
+    enum orl_result result = ok ? orl_atomic_commit(log, &file) : fail_errno(log, path);
     orl_atomic_abort(&file);
     return result;
 }

@@ -122,9 +122,8 @@ enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_
     int fd = -1;
     size_t total = 0, done = 0;
     uint8_t *bytes = NULL;
-    enum orl_result result = open_to_read(log, path, &fd, &total);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(open_to_read(log, path, &fd, &total));
+    enum orl_result result = ORL_OK;
     if (total > max_size) {
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: %zu bytes, more than the %zu expected", path,
                           total, max_size);
@@ -252,10 +251,7 @@ enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
 enum orl_result orl_names_add(const struct orl_log *log, struct orl_names *names,
                               const char *name)
 {
-    enum orl_result result = orl_grow(log, (void **)&names->items, &names->capacity,
-                                      names->count + 1, sizeof *names->items);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(log, (void **)&names->items, &names->capacity, names->count + 1, sizeof *names->items));
     char *copy = orl_strdup(log, name);
     if (!copy)
         return ORL_ERR_MEMORY;
@@ -292,12 +288,11 @@ enum orl_result orl_file_hash(const struct orl_log *log, const char *path, uint6
     *hash = 0;
     int fd = -1;
     size_t total = 0;
-    enum orl_result result = open_to_read(log, path, &fd, &total);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(open_to_read(log, path, &fd, &total));
     enum { CHUNK = 1 << 16 };
     uint8_t *chunk = orl_array(log, CHUNK, 1);
     XXH3_state_t *state = XXH3_createState();
+    enum orl_result result = ORL_OK;
     if (!chunk || !state) {
         result = ORL_ERR_MEMORY;
         goto end;

@@ -169,12 +169,10 @@ static void close_dir(const struct orl_log *log, struct orl_new_dir *dir)
 
 enum orl_result orl_new_dir_finish(const struct orl_log *log, struct orl_new_dir *dir)
 {
-    enum orl_result result = orl_flush(log, dir->path);
-    if (result == ORL_OK)
-        result = name_dir(log, dir->path, dir->out);
-    if (result == ORL_OK)
-        close_dir(log, dir);
-    return result;
+    ORL_TRY(orl_flush(log, dir->path));
+    ORL_TRY(name_dir(log, dir->path, dir->out));
+    close_dir(log, dir);
+    return ORL_OK;
 }
 
 // Where names cannot be exchanged. The old folder may be swept once nothing needs it.
@@ -195,10 +193,9 @@ enum orl_result orl_new_dir_replace(const struct orl_log *log, struct orl_new_di
     struct stat st;
     if (lstat(dir->out, &st) != 0 && errno == ENOENT)
         return orl_new_dir_finish(log, dir);
-    enum orl_result result = orl_flush(log, dir->path);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_flush(log, dir->path));
     (void)!chmod(dir->path, st.st_mode & 07777); // the new folder keeps the old permissions
+    enum orl_result result = ORL_OK;
     if (renameat2(AT_FDCWD, dir->path, AT_FDCWD, dir->out, RENAME_EXCHANGE) != 0)
         result = errno == EINVAL || errno == ENOSYS || errno == ENOTSUP
                      ? replace_aside(log, dir)

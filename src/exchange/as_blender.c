@@ -20,6 +20,6 @@ ORL_EXPORT_WRITER(orl_export_blender)
 {
     struct orl_scene near = *scene;
     memset(near.origin, 0, sizeof near.origin);
-    enum orl_result result = orl_export_nerfstudio(log, progress, &near, params);
-    return result == ORL_OK ? add_script(log, params->out) : result;
+    ORL_TRY(orl_export_nerfstudio(log, progress, &near, params));
+    return add_script(log, params->out);
 }

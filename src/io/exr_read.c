@@ -73,18 +73,12 @@ static enum orl_result check_window(struct exr_reader *reader, int *width_out, i
 {
     struct stat st;
     int32_t chunks = 0;
-    enum orl_result result =
-        check(reader, exr_get_data_window(reader->context, 0, &reader->window));
-    if (result == ORL_OK)
-        result = check(reader, exr_get_chunk_count(reader->context, 0, &chunks));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check(reader, exr_get_data_window(reader->context, 0, &reader->window)));
+    ORL_TRY(check(reader, exr_get_chunk_count(reader->context, 0, &chunks)));
     int64_t width = (int64_t)reader->window.max.x - reader->window.min.x + 1;
     int64_t height = (int64_t)reader->window.max.y - reader->window.min.y + 1;
-    result = orl_picture_check_size(reader->log, reader->path, width > 0 ? (uint64_t)width : 0,
-                                    height > 0 ? (uint64_t)height : 0);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_check_size(reader->log, reader->path, width > 0 ? (uint64_t)width : 0,
+                                   height > 0 ? (uint64_t)height : 0));
     if (stat(reader->path, &st) != 0 || chunks < 1 || (int64_t)chunks * 16 > (int64_t)st.st_size)
         return orl_fail(reader->log, ORL_ERR_FORMAT, "%s: too short for %lldx%lld pixels",
                         reader->path, (long long)width, (long long)height);
@@ -170,25 +164,16 @@ static exr_result_t read_tiles(struct exr_reader *reader)
 static enum orl_result read_part(struct exr_reader *reader)
 {
     exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
-    enum orl_result result = check(reader, exr_get_storage(reader->context, 0, &storage));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check(reader, exr_get_storage(reader->context, 0, &storage)));
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return orl_fail(reader->log, ORL_ERR_UNSUPPORTED, "%s: deep pictures cannot be read",
                         reader->path);
     int width = 0, height = 0;
-    result = find_channels(reader);
-    if (result == ORL_OK)
-        result = check_window(reader, &width, &height);
-    if (result == ORL_OK)
-        result = orl_picture_check_memory(reader->log, reader->path, (uint64_t)width,
-                                          (uint64_t)height,
-                                          (uint64_t)reader->count * sizeof(float));
-    if (result == ORL_OK)
-        result = orl_image_init(reader->log, reader->image, width, height, reader->count,
-                                ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(find_channels(reader));
+    ORL_TRY(check_window(reader, &width, &height));
+    ORL_TRY(orl_picture_check_memory(reader->log, reader->path, (uint64_t)width, (uint64_t)height,
+                                     (uint64_t)reader->count * sizeof(float)));
+    ORL_TRY(orl_image_init(reader->log, reader->image, width, height, reader->count, ORL_PIXEL_F32));
     return check(reader, storage == EXR_STORAGE_SCANLINE ? read_scanlines(reader)
                                                          : read_tiles(reader));
 }

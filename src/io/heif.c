@@ -56,12 +56,8 @@ static enum orl_result open_heif(const struct orl_log *log, const char *path,
     *file = (struct heif_file){.log = log, .path = path, .context = heif_context_alloc()};
     if (!file->context)
         return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for a HEIF reader", path);
-    enum orl_result result =
-        check(file, heif_context_read_from_file(file->context, path, NULL));
-    if (result == ORL_OK)
-        result = check(file, heif_context_get_primary_image_handle(file->context, &file->picture));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check(file, heif_context_read_from_file(file->context, path, NULL)));
+    ORL_TRY(check(file, heif_context_get_primary_image_handle(file->context, &file->picture)));
     file->width = (uint64_t)heif_image_handle_get_width(file->picture);
     file->height = (uint64_t)heif_image_handle_get_height(file->picture);
     file->bits = heif_image_handle_get_luma_bits_per_pixel(file->picture);

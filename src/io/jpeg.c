@@ -127,10 +127,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
     jpeg_save_markers(info, JPEG_APP0 + 2, 0xffff);
     jpeg_stdio_src(info, stream);
     jpeg_read_header(info, TRUE);
-    enum orl_result result =
-        orl_picture_check_size(job->log, job->path, info->image_width, info->image_height);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_check_size(job->log, job->path, info->image_width, info->image_height));
     header->width = (int)info->image_width;
     header->height = (int)info->image_height;
     header->bits = info->data_precision;
@@ -170,10 +167,7 @@ static enum orl_result check_header(const struct jpeg_job *job,
     // libjpeg keeps a progressive picture as two-byte coefficients until its last scan.
     uint64_t pixel = 3 + (jpeg_has_multiple_scans((j_decompress_ptr)(uintptr_t)info)
                               ? 2 * (uint64_t)info->num_components : 0);
-    enum orl_result result = orl_picture_check_memory(job->log, job->path, info->image_width,
-                                                      info->image_height, pixel);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_check_memory(job->log, job->path, info->image_width, info->image_height, pixel));
     if (info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK)
         return orl_fail(job->log, ORL_ERR_FORMAT,
                         "%s: CMYK print colours cannot be used; save it as RGB", job->path);
@@ -193,14 +187,10 @@ static enum orl_result decode(struct jpeg_job *job, j_decompress_ptr info, const
     info->progress = &job->progress;
     jpeg_mem_src(info, data, size);
     jpeg_read_header(info, TRUE);
-    enum orl_result result = check_header(job, info, size);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check_header(job, info, size));
     info->out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    result = orl_image_init(job->log, image, (int)info->image_width, (int)info->image_height,
-                            channels, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(job->log, image, (int)info->image_width, (int)info->image_height,
+                           channels, ORL_PIXEL_U8));
     jpeg_start_decompress(info);
     while (info->output_scanline < info->output_height) {
         JSAMPROW row = image->u8 +

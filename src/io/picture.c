@@ -93,9 +93,7 @@ static enum orl_result open_file(const struct orl_log *log, const char *path, FI
                                  enum format *format)
 {
     uint8_t magic[12];
-    enum orl_result result = orl_file_open(log, path, stream);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_file_open(log, path, stream));
     size_t got = fread(magic, 1, sizeof magic, *stream);
     rewind(*stream);
     *format = format_of(path, magic, got);
@@ -322,13 +320,11 @@ enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *p
     memset(image, 0, sizeof *image);
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
-    enum orl_result result = open_file(log, path, &stream, &format);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(open_file(log, path, &stream, &format));
     struct orl_profile *profile = find_profile(log, path, stream, format);
     fclose(stream);
-    result = format == FORMAT_UNKNOWN ? fail_unknown(log, path)
-                                      : decode_linear(log, path, format, profile, image);
+    enum orl_result result = format == FORMAT_UNKNOWN ? fail_unknown(log, path)
+                                                      : decode_linear(log, path, format, profile, image);
     orl_profile_destroy(&profile);
     if (result != ORL_OK)
         orl_image_finish(image);
@@ -364,14 +360,13 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     struct orl_image linear = {0};
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
-    enum orl_result result = open_file(log, path, &stream, &format);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(open_file(log, path, &stream, &format));
     struct orl_profile *profile = find_profile(NULL, path, stream, format);
     bool eight = !profile && (format == FORMAT_JPEG || format == FORMAT_PNG ||
                               format == FORMAT_PNM);
     orl_profile_destroy(&profile);
     fclose(stream);
+    enum orl_result result = ORL_OK;
     if (eight)
         result = orl_file_read(log, path, max_file_bytes, &data, &size);
     if (result == ORL_OK && !eight)
@@ -419,10 +414,9 @@ enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *pat
     size_t size = 0;
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
-    enum orl_result result = open_file(log, path, &stream, &format);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(open_file(log, path, &stream, &format));
     fclose(stream);
+    enum orl_result result = ORL_OK;
     if (format == FORMAT_PNG) {
         result = orl_file_read(log, path, max_file_bytes, &data, &size);
         if (result == ORL_OK)

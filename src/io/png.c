@@ -141,9 +141,8 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     png_read_info(job->png, job->info);
     png_uint_32 width = png_get_image_width(job->png, job->info);
     png_uint_32 height = png_get_image_height(job->png, job->info);
-    enum orl_result result = orl_picture_check_size(job->log, job->path, width, height);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_check_size(job->log, job->path, width, height));
+    enum orl_result result = ORL_OK;
     bool by_code = read_code_points(job, header, &result);
     if (result != ORL_OK)
         return result;
@@ -213,10 +212,7 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
     png_uint_32 width = png_get_image_width(job->png, job->info);
     png_uint_32 height = png_get_image_height(job->png, job->info);
     size_t pixel = (size_t)channels * (deep ? sizeof(float) : 1);
-    enum orl_result result =
-        orl_picture_check_memory(job->log, job->path, width, height, pixel);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_check_memory(job->log, job->path, width, height, pixel));
     if ((uint64_t)png_get_rowbytes(job->png, job->info) * height > file_size * max_ratio)
         return orl_fail(job->log, ORL_ERR_FORMAT, "%s: %zu bytes cannot hold %ux%u pixels",
                         job->path, file_size, (unsigned)width, (unsigned)height);
@@ -238,10 +234,8 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
         png_error(job->png, "unexpected row size");
     // With `deep` the samples go to the end of the image, where they are converted to floats
     // in place.
-    result = orl_image_init(job->log, image, (int)width, (int)height, channels,
-                            deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(job->log, image, (int)width, (int)height, channels,
+                           deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8));
     job->rows = orl_array(job->log, height, sizeof *job->rows);
     if (!job->rows)
         return ORL_ERR_MEMORY;
@@ -257,10 +251,7 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
 static enum orl_result to_luma(const struct orl_log *log, struct orl_image *image)
 {
     struct orl_image luma;
-    enum orl_result result =
-        orl_image_init(log, &luma, image->width, image->height, 1, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, &luma, image->width, image->height, 1, ORL_PIXEL_U8));
     size_t count = orl_image_bytes(&luma);
     for (size_t i = 0; i < count; i++) {
         const uint8_t *p = image->u8 + 3 * i;
@@ -360,10 +351,9 @@ enum orl_result orl_png_write(const struct orl_log *log, const char *path,
     ORL_REQUIRE(log, image->channels == 1 || image->channels == 3);
     struct png_job job = {.log = log, .path = path};
     struct orl_atomic_file file = {0};
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_atomic_begin(log, path, &file));
     FILE *stream = orl_atomic_stream(&file);
+    enum orl_result result = ORL_OK;
     if (!stream) {
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
         goto end;

@@ -78,18 +78,14 @@ enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, cons
                                size_t size, int channels, struct orl_image *image)
 {
     struct pnm pnm;
-    enum orl_result result = parse_header(log, path, data, size, &pnm);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(parse_header(log, path, data, size, &pnm));
     size_t samples = (size_t)pnm.width * (pnm.kind == 6 ? 3 : 1);
     size_t row_bytes = pnm.kind == 4 ? (samples + 7) / 8 : samples;
     if (row_bytes * pnm.height > size - pnm.start)
         return orl_fail(log, ORL_ERR_FORMAT, "%s: byte %zu: %zu bytes of samples are needed, but "
                         "only %zu follow", path, pnm.start, row_bytes * (size_t)pnm.height,
                         size - pnm.start);
-    result = orl_image_init(log, image, (int)pnm.width, (int)pnm.height, channels, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, image, (int)pnm.width, (int)pnm.height, channels, ORL_PIXEL_U8));
     uint8_t *out = image->u8;
     for (size_t y = 0; y < pnm.height; y++) {
         const uint8_t *row = data + pnm.start + y * row_bytes;

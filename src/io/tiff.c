@@ -94,10 +94,7 @@ static enum orl_result read_header(struct tiff_job *job)
     job->multiplied = TIFFGetFieldDefaulted(t, TIFFTAG_EXTRASAMPLES, &extra_count, &extra) &&
                       extra_count && extra[0] == EXTRASAMPLE_ASSOCALPHA &&
                       job->samples > (job->photometric == PHOTOMETRIC_RGB ? 3 : 1);
-    enum orl_result result =
-        orl_picture_check_size(job->log, job->path, job->width, job->height);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_picture_check_size(job->log, job->path, job->width, job->height));
     if (!is_supported(job))
         return orl_fail(job->log, ORL_ERR_UNSUPPORTED,
                         "%s: a TIFF of %u samples of %u bits in this colour space cannot be read; "

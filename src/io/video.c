@@ -161,11 +161,8 @@ enum orl_result orl_video_inspect(const struct orl_log *log, const struct orl_pr
 {
     struct tags tags = {0};
     memset(video, 0, sizeof *video);
-    enum orl_result result = read_tags(log, progress, path, &tags);
-    if (result == ORL_OK)
-        result = check_tags(log, path, &tags);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(read_tags(log, progress, path, &tags));
+    ORL_TRY(check_tags(log, path, &tags));
     if (is_hdr(&tags))
         orl_logf(log, ORL_LOG_INFO, "%s: HDR (%s), brought to SDR: light above 203 cd/m2 is "
                  "clipped", path, *tags.transfer == 's' ? "PQ" : "HLG");

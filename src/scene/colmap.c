@@ -140,9 +140,7 @@ static int compare_images(const void *a, const void *b)
 enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
                                  struct orl_colmap_model *model)
 {
-    enum orl_result result = orl_colmap_sort_cameras(log, dir, model);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_colmap_sort_cameras(log, dir, model));
     if (model->image_count)
         qsort(model->images, model->image_count, sizeof *model->images, compare_images);
     for (size_t i = 0; i < model->image_count; i++) {

@@ -70,18 +70,14 @@ static enum orl_result read_camera(struct reader *r, struct orl_colmap_camera *c
     } head;
     _Static_assert(sizeof head == 24, "packed as in the file");
     size_t start = r->at;
-    enum orl_result result = take(r, &head, sizeof head, "a camera");
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(take(r, &head, sizeof head, "a camera"));
     camera->id = head.id;
     camera->model = head.model;
     camera->param_count = orl_colmap_model_params(head.model);
     if (!camera->param_count)
         return orl_fail(r->log, ORL_ERR_FORMAT, "%s: byte %zu: unknown camera model %d; undistort "
                         "the pictures with the program that made it", r->path, start, head.model);
-    result = take(r, camera->params, sizeof(double) * (size_t)camera->param_count, "a camera");
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(take(r, camera->params, sizeof(double) * (size_t)camera->param_count, "a camera"));
     const char *problem = orl_colmap_camera_set(camera, head.width, head.height);
     r->at = problem ? start : r->at;
     return problem ? bad(r, problem) : ORL_OK;
@@ -90,15 +86,13 @@ static enum orl_result read_camera(struct reader *r, struct orl_colmap_camera *c
 static enum orl_result read_cameras(struct reader *r, struct orl_colmap_model *model)
 {
     uint64_t count = 0;
-    enum orl_result result = take_count(r, CAMERA_MIN, "cameras", &count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(take_count(r, CAMERA_MIN, "cameras", &count));
     model->cameras = orl_array(r->log, count, sizeof *model->cameras);
     if (!model->cameras)
         return ORL_ERR_MEMORY;
-    for (uint64_t i = 0; i < count && result == ORL_OK; i++, model->camera_count++)
-        result = read_camera(r, &model->cameras[i]);
-    return result;
+    for (uint64_t i = 0; i < count; i++, model->camera_count++)
+        ORL_TRY(read_camera(r, &model->cameras[i]));
+    return ORL_OK;
 }
 
 static enum orl_result read_point(struct reader *r, struct orl_colmap_point *point)
@@ -119,17 +113,15 @@ static enum orl_result read_point(struct reader *r, struct orl_colmap_point *poi
 static enum orl_result read_points(struct reader *r, struct orl_colmap_model *model)
 {
     uint64_t count = 0;
-    enum orl_result result = take_count(r, POINT_MIN, "points", &count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(take_count(r, POINT_MIN, "points", &count));
     if (count > UINT32_MAX)
         return bad(r, "more than 2^32 points");
     model->points = orl_array(r->log, count, sizeof *model->points);
     if (!model->points)
         return ORL_ERR_MEMORY;
-    for (uint64_t i = 0; i < count && result == ORL_OK; i++, model->point_count++)
-        result = read_point(r, &model->points[i]);
-    return result == ORL_OK ? orl_colmap_clean_points(r->log, r->path, model) : result;
+    for (uint64_t i = 0; i < count; i++, model->point_count++)
+        ORL_TRY(read_point(r, &model->points[i]));
+    return orl_colmap_clean_points(r->log, r->path, model);
 }
 
 static enum orl_result read_name(struct reader *r, char **name)
@@ -150,9 +142,7 @@ static enum orl_result read_observations(struct reader *r, const struct orl_colm
                                          struct orl_colmap_image *image)
 {
     uint64_t count = 0;
-    enum orl_result result = take_count(r, POINT2D_SIZE, "observations", &count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(take_count(r, POINT2D_SIZE, "observations", &count));
     image->points = orl_array(r->log, count, sizeof *image->points);
     if (!image->points)
         return ORL_ERR_MEMORY;
@@ -189,12 +179,11 @@ static enum orl_result read_image(struct reader *r, const struct orl_colmap_mode
 static enum orl_result read_images(struct reader *r, struct orl_colmap_model *model)
 {
     uint64_t count = 0;
-    enum orl_result result = take_count(r, IMAGE_MIN, "pictures", &count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(take_count(r, IMAGE_MIN, "pictures", &count));
     model->images = orl_array(r->log, count, sizeof *model->images);
     if (!model->images)
         return ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
     for (uint64_t i = 0; i < count && result == ORL_OK; i++) {
         model->image_count = i + 1; // counted first, so that a half-read image is released
         result = read_image(r, model, &model->images[i]);

@@ -34,11 +34,10 @@ enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
     memset(image, 0, sizeof *image);
     uint8_t *data = NULL;
     size_t size;
-    enum orl_result result = orl_file_read(log, path, SIZE_MAX / 2, &data, &size);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_file_read(log, path, SIZE_MAX / 2, &data, &size));
     unsigned long dims[3];
     size_t header = parse_header(data, size, dims);
+    enum orl_result result = ORL_OK;
     if (!header || dims[0] < 1 || dims[1] < 1 || dims[2] < 1 || dims[0] > ORL_IMAGE_MAX_SIDE ||
         dims[1] > ORL_IMAGE_MAX_SIDE || dims[2] > 4) {
         result = orl_fail(log, ORL_ERR_FORMAT,

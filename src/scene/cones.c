@@ -145,9 +145,7 @@ static enum orl_result try_bounds(const struct orl_log *log, const double centre
     float *field;
     memcpy(bounds->origin, start, sizeof start);
     bounds->size = 2 * reach;
-    enum orl_result result = orl_cones_field(log, cones, COARSE, &field);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_cones_field(log, cones, COARSE, &field));
     for (int i = 0; i < COARSE * COARSE * COARSE; i++) {
         const int here[3] = {i % COARSE, i / COARSE % COARSE, i / (COARSE * COARSE)};
         for (int k = 0; (double)field[i] <= room && k < 3; k++) {
@@ -214,8 +212,8 @@ enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhou
                               struct cone *cone)
 {
     *cone = (struct cone){.view = silhouette->view};
-    enum orl_result result = orl_silhouette_is_open(log, &silhouette->mask, &cone->open);
-    return result == ORL_OK ? orl_bridge_distance(log, &silhouette->mask, &cone->distance) : result;
+    ORL_TRY(orl_silhouette_is_open(log, &silhouette->mask, &cone->open));
+    return orl_bridge_distance(log, &silhouette->mask, &cone->distance);
 }
 
 enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
@@ -223,13 +221,12 @@ enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silho
 {
     double centre[3], reach;
     memset(cones, 0, sizeof *cones);
-    enum orl_result result = find_place(log, silhouettes, count, centre, &reach);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(find_place(log, silhouettes, count, centre, &reach));
     cones->all = orl_array(log, count, sizeof *cones->all);
     if (!cones->all)
         return ORL_ERR_MEMORY;
     cones->count = count;
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_cone_make(log, &silhouettes[i], &cones->all[i]);
     if (result == ORL_OK)
@@ -246,9 +243,7 @@ enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silho
     struct cones cones;
     float *field = NULL;
     memset(mesh, 0, sizeof *mesh);
-    enum orl_result result = orl_cones_make(log, silhouettes, count, &cones);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_cones_make(log, silhouettes, count, &cones));
     if (cones.bounds.endless && said) {
         if (!*said)
             orl_hull_warn_endless(log);
@@ -256,7 +251,7 @@ enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silho
     }
     struct orl_hull cube = {.side = side, .voxel = cones.bounds.size / side};
     memcpy(cube.origin, cones.bounds.origin, sizeof cube.origin);
-    result = orl_cones_field(log, &cones, side, &field);
+    enum orl_result result = orl_cones_field(log, &cones, side, &field);
     if (result == ORL_OK)
         result = orl_hull_field_mesh(log, &cube, field, triangles, mesh);
     free(field);

@@ -148,9 +148,7 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
     const char *problem = camera_problem(given);
     if (problem)
         return orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, problem);
-    enum orl_result result = add_camera(log, file, place, given, known);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(add_camera(log, file, place, given, known));
     size_t count = model->image_count;
     void *images = realloc(model->images, (count + 1) * sizeof *model->images);
     if (images)
@@ -183,21 +181,17 @@ enum orl_result orl_known_add_point(const struct orl_log *log, const double posi
         point.position[k] = position[k];
         point.rgb[k] = (uint8_t)(rgb[k] >= 255 ? 255 : rgb[k] > 0 ? rgb[k] : 0);
     }
-    enum orl_result result = orl_grow(log, (void **)&model->points, capacity, model->point_count + 1,
-                                      sizeof *model->points);
-    if (result == ORL_OK)
-        model->points[model->point_count++] = point;
-    return result;
+    ORL_TRY(orl_grow(log, (void **)&model->points, capacity, model->point_count + 1, sizeof *model->points));
+    model->points[model->point_count++] = point;
+    return ORL_OK;
 }
 
 enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
                                    size_t *capacities, struct orl_colmap_model *model)
 {
     struct orl_colmap_image *seen_by = &model->images[image];
-    enum orl_result result = orl_grow(log, (void **)&seen_by->points, &capacities[image],
-                                      seen_by->point_count + 1, sizeof *seen_by->points);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(log, (void **)&seen_by->points, &capacities[image],
+                     seen_by->point_count + 1, sizeof *seen_by->points));
     seen_by->points[seen_by->point_count++] = point;
     model->points[point].track_length++;
     return ORL_OK;

@@ -162,9 +162,7 @@ static enum orl_result read_with(const struct format *format,
                                  struct orl_known_cameras *known)
 {
     known->format = format->name;
-    enum orl_result result = format->read(source, known);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(format->read(source, known));
     orl_logf(source->log, ORL_LOG_INFO, "%s: %s: %zu cameras, %zu points", source->path,
              format->name, known->model.image_count, known->model.point_count);
     return ORL_OK;

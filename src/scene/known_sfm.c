@@ -143,14 +143,10 @@ enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
     if (json_array_size(all) > 1)
         orl_logf(source->log, ORL_LOG_WARNING, "%s: %zu reconstructions; taking the largest, with %zu "
                  "photographs", source->path, json_array_size(all), json_object_size(shots));
-    enum orl_result result = ORL_OK;
     const char *name;
     json_t *shot;
-    json_object_foreach(shots, name, shot) {
-        result = read_shot(source, json_object_get(best, "cameras"), name, shot, known);
-        if (result != ORL_OK)
-            return result;
-    }
+    json_object_foreach(shots, name, shot)
+        ORL_TRY(read_shot(source, json_object_get(best, "cameras"), name, shot, known));
     say_unused_of_opensfm(source, best);
     return read_opensfm_points(source, json_object_get(best, "points"), known);
 }

@@ -70,9 +70,8 @@ static enum orl_result read_nvm_point(struct orl_text_lines *l, size_t *capacity
     size_t before = model->point_count;
     if (!orl_text_numbers(l, at, 3) || !orl_text_numbers(l, rgb, 3))
         return orl_text_bad(l, "a point needs a position and a colour");
-    enum orl_result result = orl_known_add_point(l->log, at, rgb, capacity, model);
-    return result == ORL_OK ? orl_known_read_views(l, model->image_count, NULL, before, capacities, model)
-                            : result;
+    ORL_TRY(orl_known_add_point(l->log, at, rgb, capacity, model));
+    return orl_known_read_views(l, model->image_count, NULL, before, capacities, model);
 }
 
 // The first model of the file; others are of photographs that could not be placed with it.

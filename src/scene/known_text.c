@@ -44,9 +44,8 @@ enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
     struct orl_text_lines l;
     uint64_t count = 0;
     double shift = 0.5 - (source->pixel_centre >= 0 ? source->pixel_centre : 0);
-    enum orl_result result = orl_text_open(source->log, source->path, &l);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_text_open(source->log, source->path, &l));
+    enum orl_result result = ORL_OK;
     if (!orl_text_next(&l) || !orl_text_id(&l, 1000000, &count) || *l.at)
         result = orl_text_bad(&l, "the first line is not the number of cameras");
     while (result == ORL_OK && known->model.image_count < count && orl_text_next(&l))
@@ -181,15 +180,12 @@ static enum orl_result read_point(struct bundler *b, size_t *capacity, struct or
 {
     double at[3], rgb[3];
     size_t before = model->point_count;
-    enum orl_result result = next_numbers(&b->l, at, 3, "a point's position needs 3 numbers");
-    if (result == ORL_OK)
-        result = next_numbers(&b->l, rgb, 3, "a point's colour needs 3 numbers");
-    if (result == ORL_OK)
-        result = orl_known_add_point(b->l.log, at, rgb, capacity, model);
-    if (result == ORL_OK && !orl_text_next(&b->l))
-        result = orl_text_bad(&b->l, "a point needs the list of its views");
-    return result == ORL_OK ? orl_known_read_views(&b->l, b->camera_count, b->image_of, before,
-                                                   b->capacity, model) : result;
+    ORL_TRY(next_numbers(&b->l, at, 3, "a point's position needs 3 numbers"));
+    ORL_TRY(next_numbers(&b->l, rgb, 3, "a point's colour needs 3 numbers"));
+    ORL_TRY(orl_known_add_point(b->l.log, at, rgb, capacity, model));
+    if (!orl_text_next(&b->l))
+        return orl_text_bad(&b->l, "a point needs the list of its views");
+    return orl_known_read_views(&b->l, b->camera_count, b->image_of, before, b->capacity, model);
 }
 
 static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *known)
@@ -211,12 +207,11 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
     b->capacity = orl_array(l->log, b->camera_count, sizeof *b->capacity);
     if (!b->image_of || !b->capacity)
         return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < b->camera_count; i++)
-        result = read_bundler_camera(b, i, known);
-    for (uint64_t i = 0; result == ORL_OK && i < b->point_count; i++)
-        result = read_point(b, &capacity, model);
-    return result;
+    for (size_t i = 0; i < b->camera_count; i++)
+        ORL_TRY(read_bundler_camera(b, i, known));
+    for (uint64_t i = 0; i < b->point_count; i++)
+        ORL_TRY(read_point(b, &capacity, model));
+    return ORL_OK;
 }
 
 // The principal point is always the picture's centre, so that the custom of pixel centres is of no use.

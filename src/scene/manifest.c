@@ -93,29 +93,24 @@ static enum orl_result read_occluders(const struct orl_json_place *place, const 
 static enum orl_result read_radiance(const struct orl_json_place *place, const json_t *entry,
                                      struct orl_photo *photo)
 {
-    enum orl_result result = orl_json_bool(place, entry, "radiance", &photo->radiance);
-    if (result == ORL_OK && photo->radiance && !photo->linear)
-        result = orl_fail(place->log, ORL_ERR_NOT_FOUND,
-                          "%s: %s is radiance, but its file in images_linear is missing",
-                          place->path, place->what);
-    return result;
+    ORL_TRY(orl_json_bool(place, entry, "radiance", &photo->radiance));
+    if (photo->radiance && !photo->linear)
+        return orl_fail(place->log, ORL_ERR_NOT_FOUND,
+                        "%s: %s is radiance, but its file in images_linear is missing",
+                        place->path, place->what);
+    return ORL_OK;
 }
 
 static enum orl_result read_photo(const struct orl_json_place *place, const json_t *entry,
                                   const struct orl_scene *scene, struct orl_photo *photo)
 {
-    enum orl_result result = read_split(place, entry, photo);
-    if (result == ORL_OK)
-        result = orl_json_integer(place, entry, "orientation", 0, 8, &photo->orientation);
-    if (result == ORL_OK)
-        result = read_exposure(place, entry, photo);
-    if (result == ORL_OK)
-        result = read_optics(place, entry, scene, photo);
-    if (result == ORL_OK)
-        result = read_radiance(place, entry, photo);
-    if (result == ORL_OK)
-        result = read_occluders(place, entry, scene, photo);
-    return result == ORL_OK ? read_mask(place, entry, scene, photo) : result;
+    ORL_TRY(read_split(place, entry, photo));
+    ORL_TRY(orl_json_integer(place, entry, "orientation", 0, 8, &photo->orientation));
+    ORL_TRY(read_exposure(place, entry, photo));
+    ORL_TRY(read_optics(place, entry, scene, photo));
+    ORL_TRY(read_radiance(place, entry, photo));
+    ORL_TRY(read_occluders(place, entry, scene, photo));
+    return read_mask(place, entry, scene, photo);
 }
 
 static enum orl_result read_curve(const struct orl_log *log, const char *path,
@@ -345,10 +340,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, b
                                                  "sparse/points3D.bin", NULL};
     size_t changed = 0;
     json_t *root;
-    enum orl_result result = orl_json_read(log, path, &root);
-    if (result != ORL_OK)
-        return result;
-    result = orl_manifest_take(log, path, root, scene);
+    ORL_TRY(orl_json_read(log, path, &root));
+    enum orl_result result = orl_manifest_take(log, path, root, scene);
     if (result == ORL_OK)
         result = check_files(log, scene->dir, root, points ? read_on_opening : without_points,
                              ORL_LOG_WARNING, &changed);

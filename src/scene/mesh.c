@@ -81,13 +81,11 @@ enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
     char magic[4] = "";
     memset(mesh, 0, sizeof *mesh);
     FILE *stream;
-    enum orl_result result = orl_file_open(log, path, &stream);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_file_open(log, path, &stream));
     size_t got = fread(magic, 1, 3, stream);
     fclose(stream);
-    result = got == 3 && strcmp(magic, "ply") == 0 ? orl_mesh_read_ply(log, path, &builder)
-                                                   : orl_mesh_read_obj(log, path, &builder);
+    enum orl_result result = got == 3 && strcmp(magic, "ply") == 0 ? orl_mesh_read_ply(log, path, &builder)
+                                                                   : orl_mesh_read_obj(log, path, &builder);
     if (result == ORL_OK)
         result = check(log, path, &builder.mesh);
     if (result == ORL_OK)

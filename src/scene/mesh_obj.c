@@ -21,14 +21,10 @@ static enum orl_result read_vertex(struct obj *obj)
         return orl_text_bad(&obj->l, "a vertex needs 3 numbers");
     if (mesh->vertex_count == UINT32_MAX)
         return orl_text_bad(&obj->l, "more than 2^32 vertices");
-    enum orl_result result =
-        orl_grow(obj->l.log, (void **)&mesh->position, &obj->builder->vertex_capacity,
-                 mesh->vertex_count + 1, sizeof *mesh->position);
-    if (result == ORL_OK)
-        result = orl_grow(obj->l.log, (void **)&mesh->color, &obj->builder->color_capacity,
-                          mesh->vertex_count + 1, sizeof *mesh->color);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(obj->l.log, (void **)&mesh->position, &obj->builder->vertex_capacity,
+                     mesh->vertex_count + 1, sizeof *mesh->position));
+    ORL_TRY(orl_grow(obj->l.log, (void **)&mesh->color, &obj->builder->color_capacity,
+                     mesh->vertex_count + 1, sizeof *mesh->color));
     obj->colors = obj->colors && orl_text_numbers(&obj->l, c, 3);
     for (int k = 0; k < 3; k++) {
         double v = obj->colors ? 255 * c[k] : 0;
@@ -81,9 +77,8 @@ enum orl_result orl_mesh_read_obj(const struct orl_log *log, const char *path,
     struct obj obj = {.builder = builder, .colors = true};
     uint32_t *corners = NULL;
     size_t capacity = 0;
-    enum orl_result result = orl_text_open(log, path, &obj.l);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_text_open(log, path, &obj.l));
+    enum orl_result result = ORL_OK;
     while (result == ORL_OK && orl_text_next(&obj.l)) {
         bool vertex = strncmp(obj.l.at, "v ", 2) == 0, face = strncmp(obj.l.at, "f ", 2) == 0;
         if (vertex || face)

@@ -88,10 +88,8 @@ enum orl_result orl_mesh_read_ply(const struct orl_log *log, const char *path,
 {
     struct orl_ply ply;
     const struct orl_ply_element *vertex = NULL, *face = NULL;
-    enum orl_result result = orl_ply_open(log, path, &ply);
-    if (result != ORL_OK)
-        return result;
-    result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
+    ORL_TRY(orl_ply_open(log, path, &ply));
+    enum orl_result result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
     if (result == ORL_OK)
         result = read_vertices(&ply, vertex, builder);
     if (result == ORL_OK)

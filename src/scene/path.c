@@ -142,12 +142,10 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
     memset(path, 0, sizeof *path);
     if (scene->photo_count < 2 || frames < 2)
         return orl_fail(log, ORL_ERR_ARGUMENT, "a walk needs two photographs and two frames");
-    enum orl_result result = allocate(log, scene->photo_count, &keys);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(allocate(log, scene->photo_count, &keys));
     for (size_t i = 0; i < scene->photo_count; i++)
         keys.views[i] = orl_photo_upright(&scene->photos[i]);
-    result = spread_frames(log, &(struct keys){&keys, NULL}, frames, path);
+    enum orl_result result = spread_frames(log, &(struct keys){&keys, NULL}, frames, path);
     orl_path_finish(&keys);
     return result;
 }

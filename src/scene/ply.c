@@ -73,10 +73,8 @@ static enum orl_result add_property(struct orl_ply *ply, const char *line)
     if (element->property_count == ORL_PLY_PROPERTIES_MAX)
         return orl_ply_bad(ply, "too many properties");
     size_t capacity = (size_t)element->property_count;
-    enum orl_result result = orl_grow(ply->log, (void **)&element->properties, &capacity,
-                                      (size_t)element->property_count + 1, sizeof property);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(ply->log, (void **)&element->properties, &capacity,
+                     (size_t)element->property_count + 1, sizeof property));
     element->properties[element->property_count++] = property;
     element->lists = element->lists || property.list;
     // In an ascii file a value takes at least a digit and a space.
@@ -287,10 +285,9 @@ static enum orl_result skip(struct orl_ply *ply, const struct orl_ply_element *e
         ply->at += unit * (size_t)element->count;
         return ORL_OK;
     }
-    enum orl_result result = ORL_OK;
-    for (uint64_t i = 0; result == ORL_OK && i < element->count; i++)
-        result = orl_ply_record(ply, element, values, -1, NULL);
-    return result;
+    for (uint64_t i = 0; i < element->count; i++)
+        ORL_TRY(orl_ply_record(ply, element, values, -1, NULL));
+    return ORL_OK;
 }
 
 // Skips the rest of the line after the last value of an ascii record.

@@ -61,9 +61,7 @@ static bool levels_fit(const struct lod_header *h)
 static enum orl_result read_header(struct orl_lod *lod, struct lod_header *h)
 {
     struct stat file;
-    enum orl_result result = read_at(lod, 0, h, sizeof *h);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(read_at(lod, 0, h, sizeof *h));
     if (memcmp(h->magic, LOD_MAGIC, sizeof h->magic) != 0)
         return bad(lod, "not a file of levels of detail, or of another version");
     if (h->block_points != ORL_BLOCK_POINTS || h->page_blocks != ORL_LOD_BLOCKS ||

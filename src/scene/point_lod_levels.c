@@ -132,10 +132,8 @@ static enum orl_result flush_page(struct lod_levels *l, struct level *level)
 {
     if (!level->filled)
         return ORL_OK;
-    enum orl_result result = orl_grow(l->log, (void **)&level->pages, &level->page_capacity,
-                                      level->page_count + 1, sizeof *level->pages);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(l->log, (void **)&level->pages, &level->page_capacity,
+                     level->page_count + 1, sizeof *level->pages));
     struct orl_lod_page entry = describe_page(&level->page);
     entry.hash = XXH3_64bits(&level->page, sizeof level->page);
     level->points += entry.count;
@@ -204,8 +202,8 @@ static enum orl_result close_group(struct lod_levels *l, int k)
         return ORL_OK;
     make_parent(l, level, &parent);
     level->grouped = 0;
-    enum orl_result result = k + 1 < l->count ? ORL_OK : add_level(l, NULL);
-    return result == ORL_OK ? add(l, k + 1, &parent) : result;
+    ORL_TRY(k + 1 < l->count ? ORL_OK : add_level(l, NULL));
+    return add(l, k + 1, &parent);
 }
 
 static enum orl_result add(struct lod_levels *l, int k, const struct point_block *block)

@@ -137,9 +137,7 @@ static enum orl_result check_disk(const struct writer *w, const char *ply)
 
 static enum orl_result begin(struct writer *w)
 {
-    enum orl_result result = orl_atomic_begin(w->log, w->path, &w->out);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_atomic_begin(w->log, w->path, &w->out));
     w->file = orl_atomic_stream(&w->out);
     if (!w->file || fseeko(w->file, LOD_PAGES_AT, SEEK_SET) != 0)
         return orl_fail(w->log, ORL_ERR_IO, "%s: %s", w->path, strerror(errno));

@@ -116,10 +116,7 @@ static enum orl_result search_open(struct search *s)
     s->flann.log_level = FLANN_LOG_NONE;
     s->flann.cores = cores > 0 && cores < 256 ? (int)cores : 2;
     float speedup;
-    enum orl_result result = orl_points_few_alike(s->log, s->points, (unsigned)s->neighbours + 1,
-                                                  &s->few);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_points_few_alike(s->log, s->points, (unsigned)s->neighbours + 1, &s->few));
     s->index = flann_build_index((float *)(uintptr_t)s->few.position, (int)s->few.count, 3,
                                  &speedup, &s->flann);
     if (!s->index)

@@ -112,9 +112,7 @@ static enum orl_result begin(const struct orl_log *log, const char *path, uint64
 {
     *writer = (struct orl_point_writer){.log = log, .path = path, .left = count, .small = small,
                                         .origin = origin};
-    enum orl_result result = orl_atomic_begin(log, path, &writer->file);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_atomic_begin(log, path, &writer->file));
     writer->stream = orl_atomic_stream(&writer->file);
     return writer->stream && write_header(writer->stream, count, small, origin)
                ? ORL_OK

@@ -180,10 +180,8 @@ enum orl_result orl_points_read_from(const struct orl_log *log, const char *path
     struct orl_ply ply;
     const struct orl_ply_element *vertex = NULL;
     int property[ROLE_COUNT];
-    enum orl_result result = orl_ply_open(log, path, &ply);
-    if (result != ORL_OK)
-        return result;
-    result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
+    ORL_TRY(orl_ply_open(log, path, &ply));
+    enum orl_result result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
     if (result == ORL_OK)
         result = find_vertices(&ply, vertex, property);
     if (result == ORL_OK && memcmp(origin, nowhere, sizeof nowhere) != 0 &&
@@ -277,9 +275,7 @@ enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
     *read = left < most ? (size_t)left : most;
     part.count = *read;
     size_t bytes = *read * part.least;
-    enum orl_result result = orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1));
     if (fread(s->ply.data, 1, bytes, s->file) != bytes)
         return orl_fail(s->ply.log, ORL_ERR_IO, "%s: cannot read record %llu", s->ply.path,
                         (unsigned long long)s->next);

@@ -343,12 +343,12 @@ static enum orl_result look(const struct orl_log *log, const char *dir, bool poi
         return !points || folder->points || folder->lod
                    ? ORL_OK
                               : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: points.ply is missing", dir);
-    enum orl_result result = orl_manifest_check_unfinished(log, dir);
-    if (result == ORL_OK && !folder->fused)
-        result = orl_fail(log, ORL_ERR_NOT_FOUND,
-                          "%s: not a scene (no scene.json) nor a COLMAP dense workspace "
-                          "(no fused.ply)", dir);
-    return result;
+    ORL_TRY(orl_manifest_check_unfinished(log, dir));
+    if (!folder->fused)
+        return orl_fail(log, ORL_ERR_NOT_FOUND,
+                        "%s: not a scene (no scene.json) nor a COLMAP dense workspace "
+                        "(no fused.ply)", dir);
+    return ORL_OK;
 }
 
 // Adds the points. The photographs and their `test` flags must be set before.
@@ -356,14 +356,12 @@ static enum orl_result add_points(const struct orl_log *log, struct orl_scene *s
                                   const struct orl_colmap_model *model, const char *path,
                                   bool may_be_empty)
 {
-    enum orl_result result = scene->lod ? orl_lod_sample(scene->lod, ORL_LOD_SAMPLE,
-                                                         &scene->points)
-                                        : read_points(log, scene, path, may_be_empty);
-    if (result == ORL_OK)
-        result = set_distances(log, scene, model);
-    if (result == ORL_OK && !scene->ground.known)
-        result = orl_ground_find(log, scene, &scene->ground);
-    return result;
+    ORL_TRY(scene->lod ? orl_lod_sample(scene->lod, ORL_LOD_SAMPLE, &scene->points)
+                       : read_points(log, scene, path, may_be_empty));
+    ORL_TRY(set_distances(log, scene, model));
+    if (!scene->ground.known)
+        ORL_TRY(orl_ground_find(log, scene, &scene->ground));
+    return ORL_OK;
 }
 
 static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene, bool points_too,

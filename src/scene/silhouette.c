@@ -87,10 +87,7 @@ enum orl_result orl_silhouette_dark(const struct orl_log *log, const struct orl_
 {
     memset(mask, 0, sizeof *mask);
     ORL_REQUIRE(log, picture->type == ORL_PIXEL_U8 && picture->channels == 3 && threshold < 255);
-    enum orl_result result =
-        orl_image_init(log, mask, picture->width, picture->height, 1, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, mask, picture->width, picture->height, 1, ORL_PIXEL_U8));
     size_t histogram[STEPS] = {0}, count = orl_image_bytes(mask);
     for (size_t i = 0; i < count; i++) {
         const uint8_t *rgb = picture->u8 + 3 * i;
@@ -175,10 +172,7 @@ enum orl_result orl_silhouette_difference(const struct orl_log *log,
         return orl_fail(log, ORL_ERR_DATA, "a picture of %dx%d pixels, but its background has "
                         "%dx%d", picture->width, picture->height, background->mean.width,
                         background->mean.height);
-    enum orl_result result =
-        orl_image_init(log, mask, picture->width, picture->height, 1, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, mask, picture->width, picture->height, 1, ORL_PIXEL_U8));
     size_t count = orl_image_bytes(mask);
     for (size_t i = 0; i < count; i++)
         mask->u8[i] = is_subject(background->mean.f32 + 3 * i, background->deviation.f32 + 3 * i,

@@ -29,23 +29,17 @@ static enum orl_result copy_if_there(const struct orl_log *log, const struct orl
 enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct orl_scene *scene,
                                       size_t photo, const char *dir)
 {
-    enum orl_result result =
-        copy_if_there(log, scene, orl_scene_mask_path(log, scene, photo), dir);
-    if (result == ORL_OK)
-        result = copy_if_there(log, scene, orl_scene_background_path(log, scene, photo), dir);
-    if (result == ORL_OK)
-        result = copy_if_there(log, scene, orl_scene_occluders_path(log, scene, photo), dir);
-    return result;
+    ORL_TRY(copy_if_there(log, scene, orl_scene_mask_path(log, scene, photo), dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_background_path(log, scene, photo), dir));
+    return copy_if_there(log, scene, orl_scene_occluders_path(log, scene, photo), dir);
 }
 
 enum orl_result orl_subset_copy_photo(const struct orl_log *log, const struct orl_scene *scene,
                                       size_t photo, const char *dir)
 {
-    enum orl_result result =
-        copy_if_there(log, scene, orl_scene_photo_path(log, scene, photo), dir);
-    if (result == ORL_OK)
-        result = copy_if_there(log, scene, orl_scene_linear_path(log, scene, photo), dir);
-    return result == ORL_OK ? orl_subset_copy_masks(log, scene, photo, dir) : result;
+    ORL_TRY(copy_if_there(log, scene, orl_scene_photo_path(log, scene, photo), dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_linear_path(log, scene, photo), dir));
+    return orl_subset_copy_masks(log, scene, photo, dir);
 }
 
 // --- the sparse model ---
@@ -125,10 +119,9 @@ enum orl_result orl_subset_add_checksums(const struct orl_log *log, const char *
 {
     static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
                                         "sparse/points3D.bin"};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
-        result = orl_subset_add_checksum(log, dir, files[i], sums);
-    return result;
+    for (size_t i = 0; i < ORL_COUNT(files); i++)
+        ORL_TRY(orl_subset_add_checksum(log, dir, files[i], sums));
+    return ORL_OK;
 }
 
 static enum orl_result read_manifest(const struct orl_log *log, const struct orl_scene *scene,
