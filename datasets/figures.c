@@ -229,8 +229,7 @@ enum orl_result orl_figure_mesh(const struct orl_log *log, const struct orl_figu
             }
     grid.value = value;
     enum orl_result result = orl_isosurface(log, &grid, mesh);
-    if (result == ORL_OK)
-        result = finish_mesh(log, figure, mesh);
+    ORL_THEN(result, finish_mesh(log, figure, mesh));
     if (result != ORL_OK)
         orl_mesh_finish(mesh);
     free(value);

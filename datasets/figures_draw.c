@@ -218,8 +218,7 @@ enum orl_result orl_figures_draw(const struct orl_log *log, const struct orl_fig
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);
     enum orl_result result = orl_image_init(log, &picture->photo, w, h, 3, ORL_PIXEL_U8);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &picture->depth, w, h, 1, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, &picture->depth, w, h, 1, ORL_PIXEL_F32));
     if (result == ORL_OK && figure)
         result = orl_image_init(log, &picture->mask, w, h, 1, ORL_PIXEL_U8);
     for (int y = 0; result == ORL_OK && y < h; y++)

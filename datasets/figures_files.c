@@ -117,8 +117,7 @@ static enum orl_result write_backgrounds(const struct job *job)
     for (int c = 0; result == ORL_OK && c < job->params->cameras; c++) {
         struct orl_figures_picture picture;
         result = orl_figures_draw(job->log, NULL, &job->views[c], &picture);
-        if (result == ORL_OK)
-            result = write_png(job, "background", c, -1, &picture.photo);
+        ORL_THEN(result, write_png(job, "background", c, -1, &picture.photo));
         orl_figures_picture_finish(&picture);
     }
     return result;
@@ -149,12 +148,9 @@ static enum orl_result write_time_step(const struct job *job, int frame)
         if (orl_progress_cancelled(job->progress))
             return ORL_ERR_CANCELLED;
         result = orl_figures_draw(job->log, &figure, &job->views[c], &picture);
-        if (result == ORL_OK)
-            result = write_png(job, "images", c, frame, &picture.photo);
-        if (result == ORL_OK)
-            result = write_png(job, "masks", c, frame, &picture.mask);
-        if (result == ORL_OK)
-            result = write_depth(job, c, frame, &picture.depth);
+        ORL_THEN(result, write_png(job, "images", c, frame, &picture.photo));
+        ORL_THEN(result, write_png(job, "masks", c, frame, &picture.mask));
+        ORL_THEN(result, write_depth(job, c, frame, &picture.depth));
         orl_figures_picture_finish(&picture);
     }
     return result;
@@ -163,10 +159,8 @@ static enum orl_result write_time_step(const struct job *job, int frame)
 static enum orl_result write_all(const struct job *job)
 {
     enum orl_result result = make_folders(job);
-    if (result == ORL_OK)
-        result = write_cameras(job);
-    if (result == ORL_OK)
-        result = write_backgrounds(job);
+    ORL_THEN(result, write_cameras(job));
+    ORL_THEN(result, write_backgrounds(job));
     for (int f = 0; result == ORL_OK && f < job->params->frames; f++) {
         orl_progress_report(job->progress, "figures", f, job->params->frames, NULL);
         result = write_time_step(job, f);
@@ -193,8 +187,7 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
     orl_figures_views(params, views);
     job.views = views;
     result = write_all(&job);
-    if (result == ORL_OK)
-        result = orl_new_dir_finish(log, &dir);
+    ORL_THEN(result, orl_new_dir_finish(log, &dir));
 end:
     orl_new_dir_abort(log, &dir);
     free(views);

@@ -48,10 +48,8 @@ static enum orl_result write_photo(const struct job *job, int index,
                             .focal_35mm = ORL_SYNTH_FOCAL_35MM, .orientation = 1};
     char *path = view_path(job, job->photos, "", index, ".jpg");
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_synth_expose(job->log, radiance, &sensor, &photo);
-    if (result == ORL_OK)
-        result = orl_jpeg_write(job->log, path, &photo, JPEG_QUALITY, &exif);
+    ORL_THEN(result, orl_synth_expose(job->log, radiance, &sensor, &photo));
+    ORL_THEN(result, orl_jpeg_write(job->log, path, &photo, JPEG_QUALITY, &exif));
     orl_image_finish(&photo);
     free(path);
     return result;
@@ -149,10 +147,8 @@ static enum orl_result write_colmap_images(const struct job *job)
                                    "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %04d.jpg\n\n",
                                    i + 1, q[0], q[1], q[2], q[3], t[0], t[1], t[2], i + 1);
     }
-    if (result == ORL_OK)
-        result = orl_file_write(job->log, path, text, length);
-    if (result == ORL_OK)
-        result = orl_file_write(job->log, points_path, "", 0);
+    ORL_THEN(result, orl_file_write(job->log, path, text, length));
+    ORL_THEN(result, orl_file_write(job->log, points_path, "", 0));
     free(text);
     free(points_path);
     free(path);
@@ -267,10 +263,8 @@ static enum orl_result draw_all(struct orl_gpu *gpu, const struct orl_progress *
     for (int i = 0; result == ORL_OK && i < job->params->count; i++) {
         struct orl_synth_frame frame;
         result = orl_synth_draw(synth, progress, &job->views[i], &frame);
-        if (result == ORL_OK)
-            result = write_truth(job, i, &frame);
-        if (result == ORL_OK)
-            result = write_photo(job, i, &frame.radiance);
+        ORL_THEN(result, write_truth(job, i, &frame));
+        ORL_THEN(result, write_photo(job, i, &frame.radiance));
         orl_synth_frame_finish(&frame);
         orl_progress_report(progress, "synth", i + 1, job->params->count, NULL);
     }
@@ -286,10 +280,8 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
     struct orl_new_dir photos_dir = {.fd = -1}, truth_dir = {.fd = -1};
     struct orl_view *views = NULL;
     enum orl_result result = orl_synth_check(job.log, params);
-    if (result == ORL_OK)
-        result = orl_new_dir_begin(job.log, photos, &photos_dir);
-    if (result == ORL_OK)
-        result = orl_new_dir_begin(job.log, truth, &truth_dir);
+    ORL_THEN(result, orl_new_dir_begin(job.log, photos, &photos_dir));
+    ORL_THEN(result, orl_new_dir_begin(job.log, truth, &truth_dir));
     if (result != ORL_OK)
         goto end;
     views = orl_array(job.log, (size_t)params->count, sizeof *views);
@@ -303,14 +295,10 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
         orl_synth_views(params, views);
     job.views = params->views ? params->views : views;
     result = make_folders(&job);
-    if (result == ORL_OK)
-        result = write_cameras(&job);
-    if (result == ORL_OK)
-        result = draw_all(gpu, progress, &job);
-    if (result == ORL_OK)
-        result = orl_new_dir_finish(job.log, &truth_dir);
-    if (result == ORL_OK)
-        result = orl_new_dir_finish(job.log, &photos_dir);
+    ORL_THEN(result, write_cameras(&job));
+    ORL_THEN(result, draw_all(gpu, progress, &job));
+    ORL_THEN(result, orl_new_dir_finish(job.log, &truth_dir));
+    ORL_THEN(result, orl_new_dir_finish(job.log, &photos_dir));
 end:
     orl_new_dir_abort(job.log, &photos_dir);
     orl_new_dir_abort(job.log, &truth_dir);

@@ -60,12 +60,10 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
              params->plain > 0 ? "PLAIN 1\n" : "", params->vehicle ? "VEHICLE 1\n" : "");
     int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
     enum orl_result result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
-    if (result == ORL_OK)
-        result = create_target(gpu, "synth radiance", params->width, params->height, GL_RGBA32F,
-                               &synth->radiance);
-    if (result == ORL_OK)
-        result = create_target(gpu, "synth truth", params->width, params->height, GL_RGBA32F,
-                               &synth->truth);
+    ORL_THEN(result, create_target(gpu, "synth radiance", params->width, params->height, GL_RGBA32F,
+                                   &synth->radiance));
+    ORL_THEN(result, create_target(gpu, "synth truth", params->width, params->height, GL_RGBA32F,
+                                   &synth->truth));
     if (result == ORL_OK)
         *out = synth;
     else
@@ -145,12 +143,9 @@ static enum orl_result read_frame(const struct orl_synth *synth, struct orl_synt
     size_t pixels = (size_t)w * (size_t)h;
     float *texels = orl_array(log, pixels, 4 * sizeof *texels);
     enum orl_result result = texels ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->radiance, w, h, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->depth, w, h, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->normal, w, h, 3, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, &frame->radiance, w, h, 3, ORL_PIXEL_F32));
+    ORL_THEN(result, orl_image_init(log, &frame->depth, w, h, 1, ORL_PIXEL_F32));
+    ORL_THEN(result, orl_image_init(log, &frame->normal, w, h, 3, ORL_PIXEL_F32));
     if (result == ORL_OK && synth->plain > 0)
         result = orl_image_init(log, &frame->textured, w, h, 1, ORL_PIXEL_F32);
     if (result == ORL_OK && synth->vehicle)
@@ -192,8 +187,7 @@ enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progres
                    orl_groups((size_t)synth->height, TILE * TILE)},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
     enum orl_result result = dispatch_bands(synth, progress, &params);
-    if (result == ORL_OK)
-        result = read_frame(synth, frame);
+    ORL_THEN(result, read_frame(synth, frame));
     if (result != ORL_OK)
         orl_synth_frame_finish(frame);
     return result;

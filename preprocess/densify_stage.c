@@ -75,8 +75,7 @@ static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_
     FILE *out = NULL;
     enum orl_result result = fusion && sources ? orl_job_write_list(job, fusion, train)
                                                : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_atomic_begin(job->log, sources, &file);
+    ORL_THEN(result, orl_atomic_begin(job->log, sources, &file));
     if (result != ORL_OK)
         goto end;
     out = fopen(file.temp, "w");
@@ -87,8 +86,7 @@ static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_
     result = write_sources(job, out, train);
     if (fclose(out) != 0 && result == ORL_OK)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be written", sources);
-    if (result == ORL_OK)
-        result = orl_atomic_commit(job->log, &file);
+    ORL_THEN(result, orl_atomic_commit(job->log, &file));
 end:
     orl_atomic_abort(&file);
     free(fusion);
@@ -163,8 +161,7 @@ static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
     enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "patch_match_stereo", .step = "densify", .share = 1, .total = 1}, &args);
     char *maps = orl_job_path(job, "stereo");
-    if (result == ORL_OK)
-        result = maps ? orl_flush(job->log, maps) : ORL_ERR_MEMORY;
+    ORL_THEN(result, maps ? orl_flush(job->log, maps) : ORL_ERR_MEMORY);
     free(maps);
     json_object_set_new(record, "tool",
                         json_sprintf("COLMAP %s patch_match_stereo", job->colmap_version));
@@ -190,8 +187,7 @@ static enum orl_result begin_stereo(const struct orl_job *job)
                                            "stereo/consistency_graphs"};
         for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++)
             result = orl_job_fresh_dir(job, dirs[i]);
-        if (result == ORL_OK)
-            result = orl_file_write(job->log, path, key, strlen(key));
+        ORL_THEN(result, orl_file_write(job->log, path, key, strlen(key)));
     }
     free(data);
     free(path);
@@ -244,10 +240,8 @@ enum orl_result orl_stage_densify(struct orl_job *job, json_t *record)
     struct orl_names train = {0};
     bool use_colmap = false;
     enum orl_result result = choose_densifier(job, &use_colmap);
-    if (result == ORL_OK)
-        result = open_stereo(job, &train);
-    if (result == ORL_OK)
-        result = use_colmap ? densify_colmap(job, record) : densify_gl(job, &train, record);
+    ORL_THEN(result, open_stereo(job, &train));
+    ORL_THEN(result, use_colmap ? densify_colmap(job, record) : densify_gl(job, &train, record));
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     orl_names_finish(&train);

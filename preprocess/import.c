@@ -82,17 +82,13 @@ enum orl_result orl_import(const struct orl_log *log, const struct orl_import_pa
     struct orl_import_params resolved = *params;
     struct import_job job = {.log = log, .progress = progress, .params = &resolved};
     enum orl_result result = check_params(log, params);
-    if (result == ORL_OK)
-        result = orl_known_cameras_read(log, params->cameras, params->pixel_centre, &job.known);
+    ORL_THEN(result, orl_known_cameras_read(log, params->cameras, params->pixel_centre, &job.known));
     if (result == ORL_OK)
         resolve(&job, &resolved);
-    if (result == ORL_OK)
-        result = orl_import_find_all(&job);
-    if (result == ORL_OK)
-        result = orl_new_dir_begin(log, params->out, &job.new_dir);
+    ORL_THEN(result, orl_import_find_all(&job));
+    ORL_THEN(result, orl_new_dir_begin(log, params->out, &job.new_dir));
     job.dir = job.new_dir.path;
-    if (result == ORL_OK)
-        result = fill(&job);
+    ORL_THEN(result, fill(&job));
     orl_new_dir_abort(log, &job.new_dir);
     finish(&job);
     return result;

@@ -54,8 +54,7 @@ static enum orl_result begin(struct orl_job *job, const struct import_job *impor
         result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
         free(path);
     }
-    if (result == ORL_OK)
-        result = orl_stages_load(job);
+    ORL_THEN(result, orl_stages_load(job));
     return result == ORL_OK ? orl_stages_begin(job, 0) : result;
 }
 
@@ -88,8 +87,7 @@ static enum orl_result match(struct orl_job *job, const struct import_job *impor
 {
     struct orl_pair_list list;
     enum orl_result result = orl_import_pairs(import, &list);
-    if (result == ORL_OK)
-        result = orl_match_list(job, DATABASE, &list);
+    ORL_THEN(result, orl_match_list(job, DATABASE, &list));
     orl_pairs_finish(&list);
     return result;
 }
@@ -102,8 +100,7 @@ static enum orl_result leave_out_unconnected(struct orl_job *job, const struct p
     struct orl_database *db = NULL;
     size_t connected = 0, all;
     enum orl_result result = orl_colmap_read(job->log, paths->in, &model);
-    if (result == ORL_OK)
-        result = orl_database_open(job->log, paths->database, &db);
+    ORL_THEN(result, orl_database_open(job->log, paths->database, &db));
     all = model.image_count;
     for (size_t i = 0; result == ORL_OK && i < all; i++) {
         const struct orl_colmap_image image = model.images[i];
@@ -145,8 +142,7 @@ static enum orl_result write_train_list(const struct orl_job *job, const char *p
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
         if (!job->sources[i].test)
             result = orl_names_add(job->log, &names, job->sources[i].name);
-    if (result == ORL_OK)
-        result = orl_job_write_list(job, path, &names);
+    ORL_THEN(result, orl_job_write_list(job, path, &names));
     orl_names_finish(&names);
     return result;
 }
@@ -164,9 +160,7 @@ static enum orl_result take_points(const struct import_job *import, const struct
         result = orl_fail(import->log, ORL_ERR_DATA, "the photographs have only %zu points in "
                           "common: are the cameras those of these photographs?",
                           model.point_count);
-    if (result == ORL_OK)
-        result = orl_import_write_model(import, "sparse", false,
-                                        &(struct import_points){&model, true});
+    ORL_THEN(result, orl_import_write_model(import, "sparse", false, &(struct import_points){&model, true}));
     orl_colmap_finish(&model);
     return result;
 }
@@ -183,22 +177,14 @@ static enum orl_result make_sparse_points(struct orl_job *job, const struct impo
         orl_job_path(job, ".oriel/triangulated")};
     bool have = paths.database && paths.images && paths.list && paths.in && paths.out;
     enum orl_result result = have ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = write_train_list(job, paths.list);
-    if (result == ORL_OK)
-        result = orl_import_write_model(import, ".oriel/known", true, &known);
-    if (result == ORL_OK)
-        result = orl_dir_make(job->log, paths.out);
-    if (result == ORL_OK)
-        result = find_features(job, &paths);
-    if (result == ORL_OK)
-        result = match(job, import);
-    if (result == ORL_OK)
-        result = leave_out_unconnected(job, &paths);
-    if (result == ORL_OK)
-        result = triangulate(job, &paths);
-    if (result == ORL_OK)
-        result = take_points(import, &paths);
+    ORL_THEN(result, write_train_list(job, paths.list));
+    ORL_THEN(result, orl_import_write_model(import, ".oriel/known", true, &known));
+    ORL_THEN(result, orl_dir_make(job->log, paths.out));
+    ORL_THEN(result, find_features(job, &paths));
+    ORL_THEN(result, match(job, import));
+    ORL_THEN(result, leave_out_unconnected(job, &paths));
+    ORL_THEN(result, triangulate(job, &paths));
+    ORL_THEN(result, take_points(import, &paths));
     free(paths.database);
     free(paths.images);
     free(paths.list);
@@ -228,15 +214,12 @@ enum orl_result orl_import_densify(struct import_job *import)
     enum orl_result result = begin(&job, import, &params);
     if (result == ORL_OK && !has_views(&import->known.model))
         result = make_sparse_points(&job, import);
-    if (result == ORL_OK)
-        result = orl_stages_run_points(&job);
-    if (result == ORL_OK)
-        result = orl_scene_json_write(&job);
+    ORL_THEN(result, orl_stages_run_points(&job));
+    ORL_THEN(result, orl_scene_json_write(&job));
     if (result == ORL_OK && params.keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");
     // An import cannot be resumed, so the job's own files are of no use.
-    if (result == ORL_OK)
-        result = orl_job_remove(&job, ".oriel");
+    ORL_THEN(result, orl_job_remove(&job, ".oriel"));
     orl_job_close(&job);
     return result;
 }

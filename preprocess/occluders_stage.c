@@ -22,10 +22,8 @@ static enum orl_result write_masks(struct orl_job *job, const struct orl_scene *
         if (written++ == 0)
             result = orl_job_fresh_dir(job, "occluders");
         char *path = orl_scene_occluders_path(job->log, scene, i);
-        if (result == ORL_OK)
-            result = path ? orl_file_make_folder(job->log, path) : ORL_ERR_MEMORY;
-        if (result == ORL_OK)
-            result = orl_png_write(job->log, path, &masks[i]);
+        ORL_THEN(result, path ? orl_file_make_folder(job->log, path) : ORL_ERR_MEMORY);
+        ORL_THEN(result, orl_png_write(job->log, path, &masks[i]));
         if (result == ORL_OK && json_object_set_new(occluded, scene->photos[i].name,
                                                     json_real(shares[i])) != 0)
             result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
@@ -46,10 +44,8 @@ static enum orl_result find(struct orl_job *job, struct orl_gpu *gpu, struct orl
     struct orl_image *masks = orl_array(job->log, scene->photo_count, sizeof *masks);
     double *shares = orl_array(job->log, scene->photo_count, sizeof *shares);
     enum orl_result result = masks && shares ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_occluders_find(gpu, scene, job->progress, masks, shares);
-    if (result == ORL_OK)
-        result = write_masks(job, scene, masks, shares, occluded);
+    ORL_THEN(result, orl_occluders_find(gpu, scene, job->progress, masks, shares));
+    ORL_THEN(result, write_masks(job, scene, masks, shares, occluded));
     for (size_t i = 0; masks && i < scene->photo_count; i++)
         orl_image_finish(&masks[i]);
     free(masks);

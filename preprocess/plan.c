@@ -91,9 +91,8 @@ static enum orl_result parse_arguments(struct planner *p, const char *path)
         if (!texts[i])
             result = orl_fail(p->log, ORL_ERR_FORMAT, "%s: \"arguments\" are not texts", path);
     }
-    if (result == ORL_OK)
-        result = orl_arguments_parse(p->log, path, sets, (int)count, texts, count, texts + count,
-                                   &inputs);
+    ORL_THEN(result, orl_arguments_parse(p->log, path, sets, (int)count, texts, count, texts + count,
+                                       &inputs));
     free(texts);
     return result;
 }
@@ -114,8 +113,7 @@ static enum orl_result read_arguments(struct planner *p)
     if (result == ORL_OK && ((!p->undistorted && !p->given) || !json_array_size(p->arguments)))
         result = orl_fail(p->log, ORL_ERR_DATA, "%s: nothing to plan yet: run oriel prepare PHOTOS "
                           "--out %s --until undistort (or collect) first", p->dir, p->dir);
-    if (result == ORL_OK)
-        result = parse_arguments(p, path);
+    ORL_THEN(result, parse_arguments(p, path));
     json_decref(stages);
     free(path);
     return result;

@@ -16,8 +16,7 @@ static enum orl_result read_exposures(struct orl_job *job)
     if (!path)
         return ORL_OK;
     enum orl_result result = orl_exposure_list_read(job->log, path, &job->exposures);
-    if (result == ORL_OK)
-        result = orl_file_hash(job->log, path, &hash);
+    ORL_THEN(result, orl_file_hash(job->log, path, &hash));
     snprintf(job->exposures_hash, sizeof job->exposures_hash, "%016" PRIx64, hash);
     for (size_t k = 0; result == ORL_OK && k < job->exposures.count; k++) {
         const struct orl_exposure_list one = {&job->exposures.items[k], 1};
@@ -52,12 +51,10 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
     ORL_REQUIRE(log, params->radius_overlap >= 0 && params->radius_overlap <= 8);
     struct orl_job job;
     enum orl_result result = orl_job_open(&job, log, params, progress);
-    if (result == ORL_OK)
-        result = begin(&job);
+    ORL_THEN(result, begin(&job));
     if (result != ORL_OK)
         orl_job_leave(&job);
-    if (result == ORL_OK)
-        result = orl_stages_run(&job);
+    ORL_THEN(result, orl_stages_run(&job));
     bool whole = params->until == ORL_UNTIL_END;
     if (result == ORL_OK && whole)
         result = orl_scene_json_write(&job);

@@ -8,8 +8,7 @@ static enum orl_result add_file(const struct orl_job *job, const char *path, jso
 {
     char sum[ORL_CHECKSUM_SIZE];
     enum orl_result result = orl_flush(job->log, path); // COLMAP does not
-    if (result == ORL_OK)
-        result = orl_file_checksum(job->log, path, sum);
+    ORL_THEN(result, orl_file_checksum(job->log, path, sum));
     if (result == ORL_OK &&
         json_object_set_new(files, path + strlen(job->dir) + 1, json_string(sum)) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for a checksum");

@@ -126,10 +126,8 @@ static enum orl_result try_manifest(struct orl_job *job, const struct orl_log *l
     const struct orl_colmap_model *model;
     struct orl_scene *scene = NULL;
     enum orl_result result = orl_job_sparse(job, &model);
-    if (result == ORL_OK)
-        result = orl_scene_open_model(job->log, job->dir, model, &scene);
-    if (result == ORL_OK)
-        result = orl_manifest_take(log, path, root, scene);
+    ORL_THEN(result, orl_scene_open_model(job->log, job->dir, model, &scene));
+    ORL_THEN(result, orl_manifest_take(log, path, root, scene));
     orl_scene_destroy(&scene);
     return result;
 }
@@ -196,8 +194,7 @@ enum orl_result orl_scene_json_open(struct orl_job *job, struct orl_scene **scen
     enum orl_result result = root && path ? orl_job_open_scene(job, scene)
                                           : orl_fail(job->log, ORL_ERR_MEMORY,
                                                      "no memory for the scene");
-    if (result == ORL_OK)
-        result = orl_manifest_take(job->log, path, root, *scene);
+    ORL_THEN(result, orl_manifest_take(job->log, path, root, *scene));
     if (result != ORL_OK)
         orl_scene_destroy(scene);
     json_decref(root);
@@ -212,12 +209,9 @@ enum orl_result orl_scene_json_write(struct orl_job *job)
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && !root)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
-    if (result == ORL_OK)
-        result = check_manifest(job, root);
-    if (result == ORL_OK)
-        result = keep_tuned(job, path, root);
-    if (result == ORL_OK)
-        result = orl_json_write(job->log, path, root);
+    ORL_THEN(result, check_manifest(job, root));
+    ORL_THEN(result, keep_tuned(job, path, root));
+    ORL_THEN(result, orl_json_write(job->log, path, root));
     json_decref(root);
     free(path);
     return result;

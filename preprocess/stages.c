@@ -405,10 +405,8 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     json_object_set_new(record, "key", json_string(job->keys[id]));
     enum orl_result result = files ? orl_job_need_disk(job, stages[id].name, disk_need(job, id))
                                    : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = stages[id].run(job, record);
-    if (result == ORL_OK)
-        result = orl_results_sum(job, stages[id].results, files);
+    ORL_THEN(result, stages[id].run(job, record));
+    ORL_THEN(result, orl_results_sum(job, stages[id].results, files));
     if (json_object_size(files))
         json_object_set(record, "files", files);
     json_decref(files);
@@ -448,8 +446,7 @@ static enum orl_result redo_stage(struct orl_job *job, enum orl_stage_id id, con
     json_t *record = json_object();
     char sum[SUM_SIZE];
     enum orl_result result = record ? run_stage(job, id, record) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = sum_record(job, record, sum);
+    ORL_THEN(result, sum_record(job, record, sum));
     if (result == ORL_OK && json_object_set_new(record, "sum", json_string(sum)) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for a checksum");
     if (result == ORL_OK) {
@@ -468,8 +465,7 @@ enum orl_result orl_stages_run(struct orl_job *job)
     bool current[ORL_STAGE_COUNT];
     json_t *before = json_deep_copy(done_stages(job));
     enum orl_result result = before ? find_current(job, current) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = invalidate(job, current);
+    ORL_THEN(result, invalidate(job, current));
     static const int ends[] = {[ORL_UNTIL_END] = ORL_STAGE_COUNT,
                                [ORL_UNTIL_COLLECT] = ORL_STAGE_CALIBRATE,
                                [ORL_UNTIL_UNDISTORT] = ORL_STAGE_DENSIFY};

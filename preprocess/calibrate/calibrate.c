@@ -137,8 +137,7 @@ static enum orl_result refine(struct calibration *c)
     struct candidate joined = c->best;
     char *out;
     enum orl_result result = begin_try(c, &out);
-    if (result == ORL_OK)
-        result = orl_mapper_refine(c->job, joined.path, out, c->straight);
+    ORL_THEN(result, orl_mapper_refine(c->job, joined.path, out, c->straight));
     if (result == ORL_OK) {
         c->best = (struct candidate){0};
         result = consider(c, out);
@@ -152,12 +151,10 @@ static enum orl_result map(struct calibration *c, bool loose, const char *from)
 {
     char *out;
     enum orl_result result = begin_try(c, &out);
-    if (result == ORL_OK)
-        result = orl_mapper_run(c->job, &(struct orl_mapper_run){
-            .mapper = c->mapper, .from = from, .out = out, .loose = loose,
-            .straight = c->straight});
-    if (result == ORL_OK)
-        result = consider_all(c, out);
+    ORL_THEN(result, orl_mapper_run(c->job, &(struct orl_mapper_run){
+                .mapper = c->mapper, .from = from, .out = out, .loose = loose,
+                .straight = c->straight}));
+    ORL_THEN(result, consider_all(c, out));
     if (result == ORL_OK && c->mapper == ORL_MAPPER_HIERARCHICAL && !loose && !from && c->best.path)
         result = refine(c);
     if (result == ORL_OK)
@@ -271,10 +268,8 @@ static enum orl_result match_left_out(struct calibration *c)
     for (size_t i = 0; i < c->job->source_count; i++)
         marked[i] = !orl_colmap_image_by_name(&c->best.model, c->job->sources[i].name);
     enum orl_result result = set_mark(c, false);
-    if (result == ORL_OK)
-        result = orl_match_marked(c->job, marked);
-    if (result == ORL_OK)
-        result = set_mark(c, true);
+    ORL_THEN(result, orl_match_marked(c->job, marked));
+    ORL_THEN(result, set_mark(c, true));
     free(marked);
     return result == ORL_OK ? go_on_mapping(c, false) : result;
 }
@@ -292,12 +287,9 @@ static enum orl_result match_all(struct calibration *c)
 static enum orl_result try_hard(struct calibration *c)
 {
     enum orl_result result = map_one_by_one(c);
-    if (result == ORL_OK)
-        result = match_left_out(c);
-    if (result == ORL_OK)
-        result = join_more(c);
-    if (result == ORL_OK)
-        result = match_all(c);
+    ORL_THEN(result, match_left_out(c));
+    ORL_THEN(result, join_more(c));
+    ORL_THEN(result, match_all(c));
     // Where most are missing another pair may be the better start.
     if (result == ORL_OK && 5 * registered(c) < 4 * c->job->source_count) {
         say(c, "starting from narrower baselines and fewer inliers");
@@ -305,8 +297,7 @@ static enum orl_result try_hard(struct calibration *c)
     }
     if (result == ORL_OK && !enough(c) && c->job->source_count <= COSTLY_MAX) {
         result = try_costly(c);
-        if (result == ORL_OK)
-            result = join_more(c);
+        ORL_THEN(result, join_more(c));
     }
     return result;
 }
@@ -405,10 +396,8 @@ static enum orl_result finish(struct calibration *c)
     if (!model)
         return ORL_ERR_MEMORY;
     enum orl_result result = orl_dir_remove(job->log, model);
-    if (result == ORL_OK)
-        result = orl_job_remove(job, NORMALISED);
-    if (result == ORL_OK)
-        result = orl_parts_remove(job);
+    ORL_THEN(result, orl_job_remove(job, NORMALISED));
+    ORL_THEN(result, orl_parts_remove(job));
     if (result == ORL_OK && rename(c->best.path, model) != 0)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
     free(model);
@@ -458,8 +447,7 @@ enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
         [ORL_MATCHING_RETRIEVAL] = "pairs that look alike"};
     struct calibration c = {.job = job, .way = orl_match_way(job->params->matching, job->source_count)};
     enum orl_result result = orl_job_find_colmap(job);
-    if (result == ORL_OK)
-        result = orl_mapper_choose(job, &c.mapper);
+    ORL_THEN(result, orl_mapper_choose(job, &c.mapper));
     if (result != ORL_OK)
         return result;
     if ((result = orl_camera_groups_find(job, &c.groups)) != ORL_OK)
@@ -497,12 +485,9 @@ enum orl_result orl_calibrate_begin(struct orl_job *job)
     if (orl_parts_begun(job))
         return ORL_OK;
     enum orl_result result = orl_camera_groups_find(job, &c.groups);
-    if (result == ORL_OK)
-        result = orl_job_fresh_dir(job, WORK);
-    if (result == ORL_OK)
-        result = normalise(&c);
-    if (result == ORL_OK)
-        result = orl_parts_begin(job, &c.groups);
+    ORL_THEN(result, orl_job_fresh_dir(job, WORK));
+    ORL_THEN(result, normalise(&c));
+    ORL_THEN(result, orl_parts_begin(job, &c.groups));
     orl_camera_groups_finish(&c.groups);
     return result;
 }

@@ -77,10 +77,8 @@ static enum orl_result write_one(struct orl_job *job, enum orl_companion which,
     enum orl_result result =
         path ? companions[which].read(job, orl_job_find(job, image->name), &given)
              : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = undistort(job, model, image, &given, &undistorted);
-    if (result == ORL_OK)
-        result = companions[which].write(job->log, path, &undistorted);
+    ORL_THEN(result, undistort(job, model, image, &given, &undistorted));
+    ORL_THEN(result, companions[which].write(job->log, path, &undistorted));
     orl_image_finish(&given);
     orl_image_finish(&undistorted);
     free(path);

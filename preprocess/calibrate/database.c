@@ -307,8 +307,7 @@ static enum orl_result add_part(struct orl_database *db, const char *path, const
 {
     ORL_TRY(attach(db, path));
     enum orl_result result = run_sql(db, "BEGIN");
-    if (result == ORL_OK)
-        result = run_sql(db, sql);
+    ORL_THEN(result, run_sql(db, sql));
     if (result == ORL_OK)
         result = run_sql(db, "COMMIT");
     else
@@ -423,8 +422,7 @@ enum orl_result orl_database_create_like(const struct orl_log *log, const char *
     if (result == ORL_OK && copy_tables(made.handle) != SQLITE_OK)
         result = fail(&made);
     sqlite3_close(made.handle);
-    if (result == ORL_OK)
-        result = orl_database_open(log, path, db);
+    ORL_THEN(result, orl_database_open(log, path, db));
     return result == ORL_OK ? attach(*db, other) : result;
 }
 

@@ -111,8 +111,7 @@ static enum orl_result extract(struct orl_job *job, const struct orl_features_ru
     char *photos = orl_job_path(job, orl_job_has(job, ORL_CALIBRATE_NORMALISED)
                                          ? ORL_CALIBRATE_NORMALISED : ".oriel/photos");
     enum orl_result result = list && database && masks && photos ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_write_list(job, list, names);
+    ORL_THEN(result, orl_job_write_list(job, list, names));
     if (result != ORL_OK)
         goto end;
     // More parameters need more photographs to determine them.

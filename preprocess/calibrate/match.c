@@ -97,8 +97,7 @@ static enum orl_result hide_spaces(const struct orl_job *job, const char *databa
 {
     struct orl_database *db;
     enum orl_result result = orl_match_open_database(job, database, &db);
-    if (result == ORL_OK)
-        result = orl_database_hide_spaces(db, hide);
+    ORL_THEN(result, orl_database_hide_spaces(db, hide));
     orl_database_close(&db);
     return result;
 }
@@ -111,11 +110,10 @@ static enum orl_result match_features(const struct orl_job *job, const char *dat
     enum orl_result result = names ? orl_match_open_database(job, database, &db) : ORL_ERR_MEMORY;
     for (size_t i = 0; names && i < job->source_count; i++)
         names[i] = job->sources[i].name;
-    if (result == ORL_OK)
-        result = orl_raw_matches_write(job->log, &(struct orl_raw_matches_progress){
-            .progress = job->progress, .done = (double)first,
-            .share = (1 - VERIFYING) * (double)count, .total = (double)list->count}, db, names,
-            job->source_count, list->items + first, count);
+    ORL_THEN(result, orl_raw_matches_write(job->log, &(struct orl_raw_matches_progress){
+                .progress = job->progress, .done = (double)first,
+                .share = (1 - VERIFYING) * (double)count, .total = (double)list->count}, db, names,
+                job->source_count, list->items + first, count));
     orl_database_close(&db);
     free(names);
     return result;
@@ -131,12 +129,9 @@ static enum orl_result verify(struct orl_job *job, const char *name,
     char *database = orl_job_path(job, "%s", name);
     char *path = orl_job_path(job, "%s.pairs.txt", name);
     enum orl_result result = database && path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = name_pairs(job, list->items + first, count, &lines);
-    if (result == ORL_OK)
-        result = orl_job_write_list(job, path, &lines);
-    if (result == ORL_OK)
-        result = hide_spaces(job, name, true);
+    ORL_THEN(result, name_pairs(job, list->items + first, count, &lines));
+    ORL_THEN(result, orl_job_write_list(job, path, &lines));
+    ORL_THEN(result, hide_spaces(job, name, true));
     if (result == ORL_OK) {
         matcher_settings(job, database, false, &args);
         orl_colmap_arg(&args, "--match_list_path", "%s", path);
@@ -146,8 +141,7 @@ static enum orl_result verify(struct orl_job *job, const char *name,
             .done = (double)first + (1 - share) * (double)count, .share = share * (double)count,
             .total = (double)list->count}, &args);
     }
-    if (result == ORL_OK)
-        result = hide_spaces(job, name, false);
+    ORL_THEN(result, hide_spaces(job, name, false));
     orl_names_finish(&lines);
     free(database);
     free(path);
@@ -163,8 +157,7 @@ enum orl_result orl_match_list(struct orl_job *job, const char *database,
         // A CUDA build of COLMAP matches faster on its GPU.
         if (!job->colmap_cuda)
             result = match_features(job, database, list, first, count);
-        if (result == ORL_OK)
-            result = verify(job, database, list, first, count);
+        ORL_THEN(result, verify(job, database, list, first, count));
     }
     return result;
 }
@@ -198,9 +191,8 @@ enum orl_result orl_match_choose(struct orl_job *job, const char *database,
     double start = orl_time_s();
     orl_progress_report(job->progress, "pairs", 0, 1, NULL);
     enum orl_result result = read_photos(job, database, photos);
-    if (result == ORL_OK)
-        result = orl_pairs_choose(job->log, job->progress, photos, job->source_count,
-                                  job->params->seed, list);
+    ORL_THEN(result, orl_pairs_choose(job->log, job->progress, photos, job->source_count,
+                                      job->params->seed, list));
     for (size_t i = 0; i < job->source_count; i++)
         free((void *)photos[i].descriptors.data);
     free(photos);
@@ -217,8 +209,7 @@ static enum orl_result match_retrieved(struct orl_job *job, struct orl_match_sum
 {
     struct orl_pair_list list;
     enum orl_result result = orl_match_choose(job, ORL_CALIBRATE_DATABASE, &list, summary);
-    if (result == ORL_OK)
-        result = orl_match_list(job, ORL_CALIBRATE_DATABASE, &list);
+    ORL_THEN(result, orl_match_list(job, ORL_CALIBRATE_DATABASE, &list));
     orl_pairs_finish(&list);
     return result;
 }

@@ -377,14 +377,10 @@ enum orl_result orl_pairs_choose(const struct orl_log *log, const struct orl_pro
     enum orl_result result = c.descriptors ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         c.descriptors[i] = photos[i].descriptors;
-    if (result == ORL_OK)
-        result = orl_vlad(log, c.descriptors, count, seed, &c.vectors);
-    if (result == ORL_OK)
-        result = try_pairs(&c);
-    if (result == ORL_OK)
-        result = choose_pairs(&c);
-    if (result == ORL_OK)
-        result = list_chosen(&c, list);
+    ORL_THEN(result, orl_vlad(log, c.descriptors, count, seed, &c.vectors));
+    ORL_THEN(result, try_pairs(&c));
+    ORL_THEN(result, choose_pairs(&c));
+    ORL_THEN(result, list_chosen(&c, list));
     finish(&c);
     return result;
 }

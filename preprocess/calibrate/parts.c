@@ -51,8 +51,7 @@ enum orl_result orl_parts_begin(struct orl_job *job, const struct orl_camera_gro
     orl_arguments_settings(state, orl_prepare_options(), p, "parts");
     char *path = orl_job_path(job, STATE);
     enum orl_result result = path && state ? orl_features_link_masks(job) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_json_write(job->log, path, state);
+    ORL_THEN(result, orl_json_write(job->log, path, state));
     json_decref(state);
     free(path);
     return result;
@@ -92,12 +91,10 @@ static enum orl_result read_state(struct orl_job *job, struct orl_prepare_params
     if (result == ORL_OK && !orl_path_is_file(path))
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: no calibration has begun: run oriel prepare "
                           "PHOTOS --out %s --until collect first", job->dir, job->dir);
-    if (result == ORL_OK)
-        result = orl_json_read(job->log, path, &state);
+    ORL_THEN(result, orl_json_read(job->log, path, &state));
     const json_t *photos = json_object_get(state, "photographs");
     size_t count = json_array_size(photos);
-    if (result == ORL_OK)
-        result = orl_arguments_take(job->log, state, orl_prepare_options(), params, "parts");
+    ORL_THEN(result, orl_arguments_take(job->log, state, orl_prepare_options(), params, "parts"));
     params->masks_dir = json_is_true(json_object_get(state, "masks")) ? "masks" : NULL;
     if (result == ORL_OK) {
         job->sources = orl_array(job->log, count + 1, sizeof *job->sources);
@@ -256,10 +253,8 @@ static enum orl_result run_pairs(const struct part *part)
     struct orl_pair_list list = {0};
     struct orl_match_summary summary;
     enum orl_result result = join_features(part);
-    if (result == ORL_OK)
-        result = orl_match_choose(part->job, part->temp_db, &list, &summary);
-    if (result == ORL_OK)
-        result = write_pairs(part->job, &list, &summary);
+    ORL_THEN(result, orl_match_choose(part->job, part->temp_db, &list, &summary));
+    ORL_THEN(result, write_pairs(part->job, &list, &summary));
     orl_pairs_finish(&list);
     return result;
 }
@@ -280,18 +275,14 @@ static enum orl_result run_matches(const struct part *part)
     struct orl_pair_list own = {.items = list.items + begin, .count = end - begin};
     for (size_t i = begin; result == ORL_OK && i < end; i++)
         used[list.items[i].a] = used[list.items[i].b] = true;
-    if (result == ORL_OK)
-        result = orl_job_remove(job, part->temp_db);
-    if (result == ORL_OK)
-        result = orl_database_create_like(job->log, to, from, &db);
+    ORL_THEN(result, orl_job_remove(job, part->temp_db));
+    ORL_THEN(result, orl_database_create_like(job->log, to, from, &db));
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
         if (used[i])
             result = orl_database_take_features(db, job->sources[i].name);
-    if (result == ORL_OK)
-        result = orl_database_detach(db);
+    ORL_THEN(result, orl_database_detach(db));
     orl_database_close(&db);
-    if (result == ORL_OK)
-        result = orl_match_list(job, part->temp_db, &own);
+    ORL_THEN(result, orl_match_list(job, part->temp_db, &own));
     orl_pairs_finish(&list);
     free(used);
     free(all);
@@ -330,8 +321,7 @@ static enum orl_result run_part(struct orl_job *job, const struct orl_camera_gro
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is at work on it",
                           part.stem);
-    if (result == ORL_OK)
-        result = run_locked(&part);
+    ORL_THEN(result, run_locked(&part));
     orl_unlock(&fd);
     free(lock);
     free(part.stem);
@@ -372,10 +362,8 @@ enum orl_result orl_parts_join(struct orl_job *job, struct orl_match_summary *su
     char *from = name ? orl_job_path(job, "%s", name) : NULL;
     char *to = orl_job_path(job, ORL_CALIBRATE_DATABASE);
     result = from && to ? orl_file_copy(job->log, from, to) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = read_pairs(job, &list, summary);
-    if (result == ORL_OK)
-        result = orl_match_open_database(job, ORL_CALIBRATE_DATABASE, &db);
+    ORL_THEN(result, read_pairs(job, &list, summary));
+    ORL_THEN(result, orl_match_open_database(job, ORL_CALIBRATE_DATABASE, &db));
     for (int k = 0; result == ORL_OK && k < parts; k++) {
         char *part = part_name(job->log, ORL_PART_MATCHES, k, parts, ".db");
         char *path = part ? orl_job_path(job, "%s", part) : NULL;

@@ -78,9 +78,8 @@ static enum orl_result read_features(struct work *work, struct orl_database *db,
         for (int k = 0; result == ORL_OK && k < 2; k++)
             if (!work->photos[ends[k]].id)
                 result = orl_database_features(db, names[ends[k]], &work->photos[ends[k]]);
-        if (result == ORL_OK)
-            result = orl_database_has_matches(db, work->photos[ends[0]].id,
-                                              work->photos[ends[1]].id, &work->found[i].there);
+        ORL_THEN(result, orl_database_has_matches(db, work->photos[ends[0]].id,
+                                                  work->photos[ends[1]].id, &work->found[i].there));
     }
     return result;
 }
@@ -106,16 +105,14 @@ enum orl_result orl_raw_matches_write(const struct orl_log *log,
     work.photos = orl_array(log, photo_count, sizeof *work.photos);
     work.found = orl_array(log, count, sizeof *work.found);
     enum orl_result result = work.photos && work.found ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = read_features(&work, db, names);
+    ORL_THEN(result, read_features(&work, db, names));
     if (result == ORL_OK) {
         orl_threads_run(count, match_pairs, &work);
         result = work.no_memory ? orl_fail(log, ORL_ERR_MEMORY, "no memory to match features")
                  : work.stop    ? ORL_ERR_CANCELLED
                                 : ORL_OK;
     }
-    if (result == ORL_OK)
-        result = write_all(&work, db);
+    ORL_THEN(result, write_all(&work, db));
     for (size_t i = 0; work.photos && i < photo_count; i++)
         free(work.photos[i].descriptors);
     for (size_t i = 0; work.found && i < count; i++)

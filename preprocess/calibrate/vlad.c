@@ -119,8 +119,7 @@ enum orl_result orl_vlad(const struct orl_log *log, const struct orl_descriptors
     float *words = orl_array(log, WORDS, SIZE * sizeof *words);
     *vectors = orl_array(log, count, ORL_VLAD_SIZE * sizeof **vectors);
     enum orl_result result = words && *vectors ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = find_words(log, photos, count, seed, words, &word_count);
+    ORL_THEN(result, find_words(log, photos, count, seed, words, &word_count));
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         aggregate(&photos[i], words, word_count, *vectors + i * ORL_VLAD_SIZE);
     free(words);

@@ -51,12 +51,9 @@ static enum orl_result read_photo(const struct orl_log *log, const struct orl_sc
     struct orl_image luma = {0}, mean = {0}, *detail = &photo->detail;
     enum orl_result result = orl_reduced_read(log, scene, i, SIDE, &photo->reduced);
     const struct orl_image *small = &photo->reduced.picture;
-    if (result == ORL_OK)
-        result = orl_image_init(log, detail, small->width, small->height, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = open_luma(log, small, photo->reduced.open, &luma);
-    if (result == ORL_OK)
-        result = orl_bridge_blur(log, &luma, BLUR_TAPS, BLUR_SIGMA, &mean);
+    ORL_THEN(result, orl_image_init(log, detail, small->width, small->height, 1, ORL_PIXEL_F32));
+    ORL_THEN(result, open_luma(log, small, photo->reduced.open, &luma));
+    ORL_THEN(result, orl_bridge_blur(log, &luma, BLUR_TAPS, BLUR_SIGMA, &mean));
     for (int k = 0; result == ORL_OK && k < small->width * small->height; k++)
         detail->f32[k] = luma.f32[2 * k] - mean.f32[2 * k] / fmaxf(mean.f32[2 * k + 1], 1e-6f);
     orl_image_finish(&luma);
@@ -163,8 +160,7 @@ enum orl_result orl_stage_backdrop(struct orl_job *job, json_t *record)
 {
     struct orl_scene *scene = NULL;
     enum orl_result result = orl_job_open_scene(job, &scene);
-    if (result == ORL_OK)
-        result = orl_backdrop_find(job->log, scene);
+    ORL_THEN(result, orl_backdrop_find(job->log, scene));
     if (result == ORL_OK &&
         json_object_set_new(record, "backdrop", orl_manifest_backdrop(scene->backdrop_rests)) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the backdrop");

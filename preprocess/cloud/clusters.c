@@ -121,10 +121,8 @@ enum orl_result orl_clusters_make(const struct orl_log *log, const struct orl_co
         .member = orl_array(log, model->image_count + 1, sizeof *clusters->member),
         .owner = orl_array(log, model->point_count + 1, sizeof *clusters->owner)};
     enum orl_result result = clusters->member && clusters->owner ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = set_members(log, train, clusters);
-    if (result == ORL_OK)
-        result = set_owners(log, clusters);
+    ORL_THEN(result, set_members(log, train, clusters));
+    ORL_THEN(result, set_owners(log, clusters));
     if (result != ORL_OK)
         orl_clusters_finish(clusters);
     return result;

@@ -94,13 +94,10 @@ static enum orl_result fuse_members(struct orl_job *job, const struct orl_cluste
     struct orl_names names = {0};
     struct orl_points points = {0};
     enum orl_result result = orl_clusters_photographs(job->log, clusters, cluster, &names);
-    if (result == ORL_OK)
-        result = orl_fuse_photographs(job, clusters->model, &names, cluster,
-                                      (double)clusters->count, &points);
-    if (result == ORL_OK)
-        result = orl_clusters_keep_own(job->log, clusters, cluster, &points);
-    if (result == ORL_OK)
-        result = write_cloud(job, out, &points);
+    ORL_THEN(result, orl_fuse_photographs(job, clusters->model, &names, cluster,
+                                          (double)clusters->count, &points));
+    ORL_THEN(result, orl_clusters_keep_own(job->log, clusters, cluster, &points));
+    ORL_THEN(result, write_cloud(job, out, &points));
     orl_points_finish(&points);
     orl_names_finish(&names);
     return result;
@@ -114,8 +111,7 @@ static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_cluste
     int fd = -1;
     bool taken = false;
     enum orl_result result = out && lock ? orl_file_make_folder(job->log, out) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_lock(job->log, lock, &fd, &taken);
+    ORL_THEN(result, orl_lock(job->log, lock, &fd, &taken));
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is fusing this cluster",
                           out);
@@ -147,8 +143,7 @@ static enum orl_result add_cluster(const struct orl_job *job, const struct orl_c
         result = orl_points_init(job->log, &points, READ_POINTS);
     while (result == ORL_OK && read) {
         result = orl_point_stream_next(stream, READ_POINTS, &points, &read);
-        if (result == ORL_OK)
-            result = orl_point_writer_add(writer, &points);
+        ORL_THEN(result, orl_point_writer_add(writer, &points));
     }
     *count += total;
     orl_points_finish(&points);
@@ -167,12 +162,10 @@ static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clust
     for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
         if ((result = fuse_cluster(job, clusters, c)) == ORL_OK)
             result = add_cluster(job, clusters, c, NULL, count);
-    if (result == ORL_OK)
-        result = orl_point_writer_begin(job->log, path, *count, false, &writer);
+    ORL_THEN(result, orl_point_writer_begin(job->log, path, *count, false, &writer));
     for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
         result = add_cluster(job, clusters, c, &writer, &again);
-    if (result == ORL_OK)
-        result = orl_point_writer_end(&writer);
+    ORL_THEN(result, orl_point_writer_end(&writer));
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     orl_point_writer_finish(&writer);
@@ -188,8 +181,7 @@ static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_mod
     enum orl_result result = orl_fuse_photographs(job, model, train, 0, 1, &points);
     if (result == ORL_OK && job->params->hull != ORL_HULL_NONE)
         result = orl_close_hull(job, model, train, &points, record);
-    if (result == ORL_OK)
-        result = write_cloud(job, path, &points);
+    ORL_THEN(result, write_cloud(job, path, &points));
     *count = points.count;
     orl_points_finish(&points);
     return result;
@@ -201,8 +193,7 @@ static enum orl_result make_clusters(struct orl_job *job, const struct orl_colma
 {
     size_t size = (size_t)job->params->fuse_cluster;
     enum orl_result result = size ? ORL_OK : orl_fuse_choose(job, model, train, &size);
-    if (result == ORL_OK)
-        result = orl_clusters_make(job->log, model, train, size, clusters);
+    ORL_THEN(result, orl_clusters_make(job->log, model, train, size, clusters));
     if (result == ORL_OK && !job->params->fuse_cluster && clusters->count > 1)
         orl_logf(job->log, ORL_LOG_INFO, "fuse: %zu clusters of at most %zu of the %zu "
                  "photographs, and %zu more to help each%s", clusters->count, size, train->count,
@@ -219,16 +210,13 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     const struct orl_colmap_model *model = NULL;
     char *path = orl_job_path(job, ".oriel/fused.ply");
     enum orl_result result = path ? orl_job_sparse(job, &model) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_train_names(job, &train);
-    if (result == ORL_OK)
-        result = make_clusters(job, model, &train, &clusters);
+    ORL_THEN(result, orl_job_train_names(job, &train));
+    ORL_THEN(result, make_clusters(job, model, &train, &clusters));
     if (result == ORL_OK && clusters.count > 1)
         result = fuse_clusters(job, &clusters, path, &points);
     else if (result == ORL_OK)
         result = fuse_all(job, model, &train, path, &points, record);
-    if (result == ORL_OK)
-        result = orl_job_remove(job, "stereo/fused");
+    ORL_THEN(result, orl_job_remove(job, "stereo/fused"));
     if (result == ORL_OK) {
         json_object_set_new(record, "clusters", json_integer((json_int_t)clusters.count));
         if (clusters.count > 1)
@@ -251,17 +239,14 @@ static enum orl_result fuse_one(struct orl_job *job, const struct orl_fuse_param
     struct orl_clusters clusters = {0};
     struct orl_names train = {0};
     enum orl_result result = orl_job_sparse(job, &model);
-    if (result == ORL_OK)
-        result = orl_job_train_names(job, &train);
-    if (result == ORL_OK)
-        result = orl_fuse_clusters(job->log, model, &train, params->size,
-                                   orl_fuse_budget(params->max_ram_bytes), &clusters);
+    ORL_THEN(result, orl_job_train_names(job, &train));
+    ORL_THEN(result, orl_fuse_clusters(job->log, model, &train, params->size,
+                                       orl_fuse_budget(params->max_ram_bytes), &clusters));
     if (result == ORL_OK && (clusters.count < 2 || clusters.count != (size_t)params->count))
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: %zu photographs are fused in %zu "
                           "cluster%s, not in %d", job->dir, train.count, clusters.count,
                           clusters.count == 1 ? "" : "s", params->count);
-    if (result == ORL_OK)
-        result = fuse_cluster(job, &clusters, params->cluster);
+    ORL_THEN(result, fuse_cluster(job, &clusters, params->cluster));
     orl_clusters_finish(&clusters);
     orl_names_finish(&train);
     return result;
@@ -276,10 +261,8 @@ enum orl_result orl_fuse_cluster(const struct orl_log *log, const char *scene,
         .out = scene, .masks_dir = params->masks ? "masks" : NULL,
         .max_ram_bytes = params->max_ram_bytes};
     enum orl_result result = orl_job_attach(&job, log, &prepare, progress);
-    if (result == ORL_OK)
-        result = orl_job_take_sources(&job);
-    if (result == ORL_OK)
-        result = fuse_one(&job, params);
+    ORL_THEN(result, orl_job_take_sources(&job));
+    ORL_THEN(result, fuse_one(&job, params));
     orl_job_close(&job);
     return result;
 }

@@ -155,16 +155,13 @@ static enum orl_result write_pixels(struct fusion *f, size_t i)
     char *normals = orl_job_path(job, "stereo/normal_maps/%s.geometric.bin", s->image->name);
     char *photo = orl_job_path(job, "images/%s", s->image->name);
     enum orl_result result = normals && photo ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_colmap_map_read(job->log, normals, &normal);
+    ORL_THEN(result, orl_colmap_map_read(job->log, normals, &normal));
     if (result == ORL_OK && (normal.width != depth->width || normal.height != depth->height ||
                              normal.channels != 3))
         result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: not of the size of the depth map, %dx%d",
                           normals, depth->width, depth->height);
-    if (result == ORL_OK)
-        result = orl_picture_read(job->log, photo, 3, &whole);
-    if (result == ORL_OK)
-        result = orl_bridge_resize(job->log, &whole, depth->width, depth->height, &picture);
+    ORL_THEN(result, orl_picture_read(job->log, photo, 3, &whole));
+    ORL_THEN(result, orl_bridge_resize(job->log, &whole, depth->width, depth->height, &picture));
     if (result == ORL_OK)
         orl_fuse_pixels_write(&f->maps[i], &s->found, &normal, &picture, s->first, f->points);
     orl_image_finish(&normal);
@@ -242,16 +239,11 @@ enum orl_result orl_fuse_photographs(struct orl_job *job, const struct orl_colma
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
         if (orl_names_contain(names, model->images[i].name))
             f.sources[f.count++].image = &model->images[i];
-    if (result == ORL_OK)
-        result = find_others(&f);
-    if (result == ORL_OK)
-        result = run(&f, read_depth);
-    if (result == ORL_OK)
-        result = run(&f, find_pixels);
-    if (result == ORL_OK)
-        result = make_points(&f, points);
-    if (result == ORL_OK)
-        result = run(&f, write_pixels);
+    ORL_THEN(result, find_others(&f));
+    ORL_THEN(result, run(&f, read_depth));
+    ORL_THEN(result, run(&f, find_pixels));
+    ORL_THEN(result, make_points(&f, points));
+    ORL_THEN(result, run(&f, write_pixels));
     for (size_t i = 0; i < f.count; i++) {
         free(f.sources[i].others);
         orl_fused_pixels_finish(&f.sources[i].found);

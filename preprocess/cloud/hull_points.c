@@ -188,8 +188,7 @@ enum orl_result orl_hull_points_begin(const struct orl_log *log,
     double middle[3] = {0}, extent = 0;
     *hull = (struct orl_hull_points){.silhouettes = silhouettes, .count = count};
     enum orl_result result = mark_outside(log, points, hull);
-    if (result == ORL_OK)
-        result = find_extent(log, points, hull->outside, middle, &extent);
+    ORL_THEN(result, find_extent(log, points, hull->outside, middle, &extent));
     if (result != ORL_OK || !(extent > 0))
         return result;
     double size = ROOM * extent, voxel = VOXEL_PX * pixel_size(hull, middle);
@@ -360,14 +359,10 @@ static enum orl_result replace_points(const struct orl_log *log, const struct or
     struct orl_points surface = {0}, outside = {0}, joined = {0};
     const struct orl_points *const clouds[3] = {points, &outside, &surface};
     enum orl_result result = take(log, hull->outside, points, &outside);
-    if (result == ORL_OK)
-        result = surface_points(log, &hull->cube, mesh, &surface);
-    if (result == ORL_OK)
-        result = drop_near(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, &outside);
-    if (result == ORL_OK)
-        result = drop_near(log, points, APART * hull->cube.voxel, &surface);
-    if (result == ORL_OK)
-        result = join(log, clouds, &joined);
+    ORL_THEN(result, surface_points(log, &hull->cube, mesh, &surface));
+    ORL_THEN(result, drop_near(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, &outside));
+    ORL_THEN(result, drop_near(log, points, APART * hull->cube.voxel, &surface));
+    ORL_THEN(result, join(log, clouds, &joined));
     if (result == ORL_OK) {
         *added = points->count + outside.count;
         orl_points_finish(points);
@@ -394,8 +389,7 @@ enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_p
     if (result != ORL_OK || !any)
         return result;
     result = make_surface(log, &hull->cube, &mesh);
-    if (result == ORL_OK)
-        result = replace_points(log, hull, &mesh, points, added);
+    ORL_THEN(result, replace_points(log, hull, &mesh, points, added));
     orl_mesh_finish(&mesh);
     return result;
 }

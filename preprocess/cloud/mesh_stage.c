@@ -65,8 +65,7 @@ static enum orl_result write_points(const struct orl_job *job, const char *to)
     enum orl_result result = orl_lod_read_cloud(job->log, job->dir, MESH_POINTS, &points);
     if (result == ORL_OK && points.count)
         result = crop(job->log, &points);
-    if (result == ORL_OK)
-        result = orl_points_write(job->log, to, &points, false);
+    ORL_THEN(result, orl_points_write(job->log, to, &points, false));
     orl_points_finish(&points);
     return result;
 }
@@ -124,10 +123,8 @@ static enum orl_result write_mesh(const struct orl_job *job, const char *from, s
     enum orl_result result = to ? orl_mesh_read(job->log, from, &mesh) : ORL_ERR_MEMORY;
     if (result == ORL_OK && mesh.triangle_count > most)
         result = orl_mesh_decimate(job->log, most, &mesh);
-    if (result == ORL_OK)
-        result = orl_mesh_set_normals(job->log, &mesh);
-    if (result == ORL_OK)
-        result = orl_mesh_write(job->log, to, &mesh);
+    ORL_THEN(result, orl_mesh_set_normals(job->log, &mesh));
+    ORL_THEN(result, orl_mesh_write(job->log, to, &mesh));
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     *triangles = mesh.triangle_count;
@@ -143,16 +140,11 @@ enum orl_result orl_stage_mesh(struct orl_job *job, json_t *record)
     char *input = orl_job_path(job, poisson ? ".oriel/mesh.tmp/points.ply" : ".oriel/mesh.tmp/sparse");
     char *output = orl_job_path(job, ".oriel/mesh.tmp/mesh.ply");
     enum orl_result result = input && output ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_job_fresh_dir(job, ".oriel/mesh.tmp");
-    if (result == ORL_OK)
-        result = poisson ? write_points(job, input) : write_train_model(job, input);
-    if (result == ORL_OK)
-        result = run_mesher(job, input, output);
-    if (result == ORL_OK)
-        result = write_mesh(job, output, &triangles);
-    if (result == ORL_OK)
-        result = orl_job_remove(job, ".oriel/mesh.tmp");
+    ORL_THEN(result, orl_job_fresh_dir(job, ".oriel/mesh.tmp"));
+    ORL_THEN(result, poisson ? write_points(job, input) : write_train_model(job, input));
+    ORL_THEN(result, run_mesher(job, input, output));
+    ORL_THEN(result, write_mesh(job, output, &triangles));
+    ORL_THEN(result, orl_job_remove(job, ".oriel/mesh.tmp"));
     if (result == ORL_OK) {
         json_object_set_new(record, "tool", json_sprintf("COLMAP %s, %s", job->colmap_version,
                                                          orl_prepare_mesh_names[job->params->mesh]));

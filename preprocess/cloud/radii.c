@@ -67,14 +67,10 @@ static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_p
     struct orl_points points = {0};
     char *out = orl_job_path(job, "points.ply");
     enum orl_result result = out ? orl_points_read(job->log, in, &points) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_points_set_radii(job->log, job->progress, params,
-                                      (const double (*)[3])viewers->centres, viewers->count,
-                                      &points);
-    if (result == ORL_OK)
-        result = orl_points_limit_radii(job->log, &limits, viewers->views, viewers->count, &points);
-    if (result == ORL_OK)
-        result = orl_points_write(job->log, out, &points, false);
+    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, params,
+                                          (const double (*)[3])viewers->centres, viewers->count, &points));
+    ORL_THEN(result, orl_points_limit_radii(job->log, &limits, viewers->views, viewers->count, &points));
+    ORL_THEN(result, orl_points_write(job->log, out, &points, false));
     if (result == ORL_OK)
         result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
     *left = points.count;
@@ -93,8 +89,7 @@ static enum orl_result write_levels(struct orl_job *job, const struct orl_radii_
     char *out = orl_job_path(job, ORL_LOD_NAME);
     enum orl_result result = out ? orl_lod_write(job->log, job->progress, &how, in, out)
                                  : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_lod_open(job->log, out, &lod);
+    ORL_THEN(result, orl_lod_open(job->log, out, &lod));
     if (result == ORL_OK)
         result = orl_job_remove(job, "points.ply"); // of a cloud that was smaller
     *left = lod ? (size_t)lod->points : 0;
@@ -115,15 +110,13 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
     enum orl_result result = in ? orl_point_stream_open(job->log, in, &stream, &fused)
                                 : ORL_ERR_MEMORY;
     orl_point_stream_close(&stream);
-    if (result == ORL_OK)
-        result = find_viewers(job, &viewers);
+    ORL_THEN(result, find_viewers(job, &viewers));
     if (result == ORL_OK && fused > most)
         orl_logf(job->log, ORL_LOG_INFO, "radii: %llu points are more than the %llu that fit in "
                  "memory; dividing them on disk", (unsigned long long)fused,
                  (unsigned long long)most);
-    if (result == ORL_OK)
-        result = fused > most ? write_levels(job, &params, &viewers, in, &left)
-                              : write_whole(job, &params, &viewers, in, &left);
+    ORL_THEN(result, fused > most ? write_levels(job, &params, &viewers, in, &left)
+                                  : write_whole(job, &params, &viewers, in, &left));
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     json_object_set_new(record, "tool", json_string("FLANN"));

@@ -43,8 +43,7 @@ enum orl_result orl_reduced_read(const struct orl_log *log, const struct orl_sce
     out->view.camera = orl_camera_resized(c, width, height);
     char *path = orl_scene_photo_path(log, scene, photo);
     enum orl_result result = path ? orl_picture_read(log, path, 3, &picture) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_bridge_resize(log, &picture, width, height, &out->picture);
+    ORL_THEN(result, orl_bridge_resize(log, &picture, width, height, &out->picture));
     orl_image_finish(&picture);
     free(path);
     if (result == ORL_OK && !(out->open = orl_array(log, count, sizeof *out->open)))

@@ -120,8 +120,7 @@ static enum orl_result read_dark(struct orl_job *job, const struct orl_silhouett
     struct orl_image picture = {0};
     char *path = orl_job_path(job, "images/%s", found->image[i]->name);
     enum orl_result result = path ? orl_picture_read(job->log, path, 3, &picture) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_silhouette_dark(job->log, &picture, threshold, used, mask);
+    ORL_THEN(result, orl_silhouette_dark(job->log, &picture, threshold, used, mask));
     orl_image_finish(&picture);
     free(path);
     return result;

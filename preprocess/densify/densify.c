@@ -99,8 +99,7 @@ static enum orl_result write_map(const struct densifier *d, const char *dir, siz
 {
     char *path = map_path(d, dir, photo, pass);
     enum orl_result result = path ? make_folder_of(d, path) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_colmap_map_write(d->log, path, map);
+    ORL_THEN(result, orl_colmap_map_write(d->log, path, map));
     free(path);
     return result;
 }
@@ -279,8 +278,7 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, const s
         if (result == ORL_OK && pass->geometric)
             result = read_source_depth(d, &pass[-1], source, k, job);
     }
-    if (result == ORL_OK)
-        result = read_mask(d, job);
+    ORL_THEN(result, read_mask(d, job));
     if (result == ORL_OK && !pass->geometric)
         result = make_seeds(d, photo, job);
     return result;
@@ -296,17 +294,13 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo,
     enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
                                   : ORL_ERR_MEMORY;
     free(path);
-    if (result == ORL_OK)
-        result = orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
-                                ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
-                                ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(d->log, &maps.confidence, width >> d->shrink, height >> d->shrink,
-                                1, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = write_maps(d, photo, pass, &maps);
+    ORL_THEN(result, orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
+                                    ORL_PIXEL_F32));
+    ORL_THEN(result, orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
+                                    ORL_PIXEL_F32));
+    ORL_THEN(result, orl_image_init(d->log, &maps.confidence, width >> d->shrink, height >> d->shrink,
+                                    1, ORL_PIXEL_F32));
+    ORL_THEN(result, write_maps(d, photo, pass, &maps));
     orl_densify_maps_finish(&maps);
     return result;
 }
@@ -331,8 +325,7 @@ static enum orl_result process(struct densifier *d, size_t photo, const struct p
     if (pass->geometric) {
         result = read_start(d, photo, &pass[-1], &job, &start);
         job.start = &start;
-        if (result == ORL_OK)
-            result = orl_densify_geometric(d->device, &job, &maps);
+        ORL_THEN(result, orl_densify_geometric(d->device, &job, &maps));
     } else {
         result = orl_densify_photometric(d->device, &job, &maps);
     }
@@ -346,8 +339,7 @@ static enum orl_result process(struct densifier *d, size_t photo, const struct p
                                            &maps);
     if (result == ORL_OK && job.last)
         result = orl_densify_complete(d->log, &job, &maps);
-    if (result == ORL_OK)
-        result = write_maps(d, photo, pass, &maps);
+    ORL_THEN(result, write_maps(d, photo, pass, &maps));
 end:
     orl_densify_maps_finish(&start);
     orl_densify_maps_finish(&maps);
@@ -519,24 +511,16 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     enum orl_result result =
         d->params.model ? ORL_OK : orl_colmap_read(d->log, d->sparse_dir, &d->own_model);
     d->model = d->params.model ? d->params.model : &d->own_model;
-    if (result == ORL_OK)
-        result = orl_densify_photos_init(d->log, d->model, names, &d->photos);
-    if (result == ORL_OK)
-        result = plan_memory(d);
-    if (result == ORL_OK)
-        result = orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans);
-    if (result == ORL_OK)
-        result = check_plans(d);
+    ORL_THEN(result, orl_densify_photos_init(d->log, d->model, names, &d->photos));
+    ORL_THEN(result, plan_memory(d));
+    ORL_THEN(result, orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans));
+    ORL_THEN(result, check_plans(d));
     if (result == ORL_OK && d->params.part)
         return orl_densify_check_maps(d->log, workspace, &d->params, d->shrink);
-    if (result == ORL_OK)
-        result = orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink);
-    if (result == ORL_OK)
-        result = orl_dir_make(d->log, d->depth_dir);
-    if (result == ORL_OK)
-        result = orl_dir_make(d->log, d->normal_dir);
-    if (result == ORL_OK)
-        result = orl_dir_make(d->log, d->confidence_dir);
+    ORL_THEN(result, orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink));
+    ORL_THEN(result, orl_dir_make(d->log, d->depth_dir));
+    ORL_THEN(result, orl_dir_make(d->log, d->normal_dir));
+    ORL_THEN(result, orl_dir_make(d->log, d->confidence_dir));
     return result;
 }
 
@@ -584,13 +568,10 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
     struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
                           .progress = progress, .lock_fd = -1};
     enum orl_result result = open_densifier(&d, workspace, photos);
-    if (result == ORL_OK)
-        result = orl_densify_device_create(gpu, &d.params, &d.device);
-    if (result == ORL_OK)
-        result = orl_densify_cache_create(d.log, &d.photos, d.images_dir, &d.cache);
+    ORL_THEN(result, orl_densify_device_create(gpu, &d.params, &d.device));
+    ORL_THEN(result, orl_densify_cache_create(d.log, &d.photos, d.images_dir, &d.cache));
     plan_passes(&d);
-    if (result == ORL_OK)
-        result = process_passes(&d);
+    ORL_THEN(result, process_passes(&d));
     close_densifier(&d);
     return result;
 }

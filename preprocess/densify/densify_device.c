@@ -410,10 +410,8 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
     if (!pixels)
         return ORL_ERR_MEMORY;
     enum orl_result result = orl_image_init(log, &maps->depth, width, height, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32));
+    ORL_THEN(result, orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32));
     if (result != ORL_OK)
         goto end;
     orl_tex_read(tex, 0, GL_RGBA, GL_FLOAT, count * 4 * sizeof *pixels, pixels);
@@ -440,12 +438,9 @@ static enum orl_result finish(struct densify_device *device, const struct densif
     struct orl_tex_params params = {.width = level->block.area[0], .height = level->block.area[1],
                                     .format = GL_RGBA32F, .tag = "densify maps"};
     enum orl_result result = orl_tex_create(device->gpu, &params, &out);
-    if (result == ORL_OK)
-        result = run(device, job, level, FIT, NULL, 0.95);
-    if (result == ORL_OK)
-        result = run(device, job, level, which, out, 1.0);
-    if (result == ORL_OK)
-        result = read_maps(device->gpu, out, maps);
+    ORL_THEN(result, run(device, job, level, FIT, NULL, 0.95));
+    ORL_THEN(result, run(device, job, level, which, out, 1.0));
+    ORL_THEN(result, read_maps(device->gpu, out, maps));
     orl_tex_destroy(device->gpu, &out);
     return result;
 }
@@ -477,8 +472,7 @@ static enum orl_result sweeps_coarsest(struct densify_device *device, const stru
     int count = device->params.iterations + 2;
     level->block.run[3] = RANDOM_TRIES;
     enum orl_result result = upload_seeds(device->gpu, job, level);
-    if (result == ORL_OK)
-        result = run(device, job, level, INIT_RANDOM, level->extra, 0.0);
+    ORL_THEN(result, run(device, job, level, INIT_RANDOM, level->extra, 0.0));
     level->block.tests[0] = 8;
     level->block.tests[1] = 6;
     level->block.tests[2] = least(VIEWS_COARSE, device->params.sources);
@@ -544,10 +538,8 @@ enum orl_result orl_densify_geometric(struct densify_device *device, const struc
 {
     struct level level = {.number = job->finest};
     enum orl_result result = level_open(device, job, &level);
-    if (result == ORL_OK)
-        result = upload_source_depths(device->gpu, job, &level);
-    if (result == ORL_OK)
-        result = upload_start(device->gpu, job, &level);
+    ORL_THEN(result, upload_source_depths(device->gpu, job, &level));
+    ORL_THEN(result, upload_start(device->gpu, job, &level));
     if (result != ORL_OK)
         goto end;
     level.block.run[1] = 1000 * (DENSIFY_LEVELS_MAX + job->draw);
@@ -557,10 +549,8 @@ enum orl_result orl_densify_geometric(struct densify_device *device, const struc
     level.block.tests[1] = 1;
     level.block.tests[2] = least(VIEWS_FINE, device->params.sources);
     set_steps(&level, 0.5f, 0.15f, 0);
-    if (result == ORL_OK)
-        result = sweep(device, job, &level, SWEEP_GEOMETRIC, 0.9);
-    if (result == ORL_OK)
-        result = finish(device, job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps);
+    ORL_THEN(result, sweep(device, job, &level, SWEEP_GEOMETRIC, 0.9));
+    ORL_THEN(result, finish(device, job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps));
 end:
     level_finish(device->gpu, &level);
     return result;

@@ -132,8 +132,7 @@ static enum orl_result find_open(const struct orl_log *log, struct outline *o)
         orl_image_init(log, &holes, o->luma->width, o->luma->height, 1, ORL_PIXEL_U8);
     for (size_t at = 0; result == ORL_OK && at < count; at++)
         holes.u8[at] = o->plane[3 * at] > 0 ? 0 : 255;
-    if (result == ORL_OK)
-        result = orl_bridge_label(log, &holes, &labels, &pieces);
+    ORL_THEN(result, orl_bridge_label(log, &holes, &labels, &pieces));
     if (result == ORL_OK && !(size = orl_array(log, pieces + 1, sizeof *size)))
         result = ORL_ERR_MEMORY;
     for (size_t at = 0; result == ORL_OK && at < count; at++)

@@ -47,8 +47,7 @@ static enum orl_result add_model(struct digest *digest, const char *workspace)
     enum orl_result result = dir ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(names); i++) {
         result = add_file(digest, dir, names[i], ".bin");
-        if (result == ORL_OK)
-            result = add_file(digest, dir, names[i], ".txt");
+        ORL_THEN(result, add_file(digest, dir, names[i], ".txt"));
     }
     free(dir);
     return result;
@@ -87,8 +86,7 @@ static enum orl_result make_record(const struct orl_log *log, const char *worksp
         return orl_fail(log, ORL_ERR_MEMORY, "no memory for a checksum");
     XXH3_64bits_reset(digest.state);
     enum orl_result result = add_model(&digest, workspace);
-    if (result == ORL_OK)
-        result = add_pictures(&digest, workspace, photos, params->masks_dir);
+    ORL_THEN(result, add_pictures(&digest, workspace, photos, params->masks_dir));
     if (result == ORL_OK)
         *record = json_pack(
             "{s:i, s:o, s:o}", "version", ORL_DENSIFY_VERSION, "settings",
@@ -178,10 +176,8 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
     // The maps go first: after an interruption the old record still describes the remaining maps.
     if (ours)
         result = remove_maps(log, workspace);
-    if (result == ORL_OK)
-        result = orl_dir_make(log, stereo);
-    if (result == ORL_OK)
-        result = orl_json_write(log, path, record);
+    ORL_THEN(result, orl_dir_make(log, stereo));
+    ORL_THEN(result, orl_json_write(log, path, record));
 end:
     json_decref(record);
     json_decref(old);

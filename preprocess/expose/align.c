@@ -262,8 +262,7 @@ static enum orl_result fit_lenses(struct problem *p, float *residual,
 {
     enum orl_result result = fit(p, 3, false, residual);
     double before = spread(p, residual, false);
-    if (result == ORL_OK)
-        result = fit(p, 3, true, residual);
+    ORL_THEN(result, fit(p, 3, true, residual));
     // Vignetting that explains less than a hundredth of the spread is rejected as noise.
     if (result != ORL_OK || spread(p, residual, false) > 0.99 * before)
         return result;

@@ -200,9 +200,8 @@ static enum orl_result take_samples(struct exposing *e)
         if (!paths[i])
             result = ORL_ERR_MEMORY;
     }
-    if (result == ORL_OK)
-        result = orl_samples_take(job->log, job->progress, photos, e->train, &points, &params,
-                                  &e->samples);
+    ORL_THEN(result, orl_samples_take(job->log, job->progress, photos, e->train, &points, &params,
+                                      &e->samples));
     for (size_t i = 0; paths && i < e->train; i++)
         free(paths[i]);
     free(paths);
@@ -338,8 +337,7 @@ static enum orl_result align(struct exposing *e)
             .linear = response < 0 ? NULL
                                    : (const float (*)[256])e->responses[response].linear};
     }
-    if (result == ORL_OK)
-        result = orl_align(e->job->log, &e->samples, &params, photos, e->train, &alignment);
+    ORL_THEN(result, orl_align(e->job->log, &e->samples, &params, photos, e->train, &alignment));
     e->contradicted = result == ORL_OK && orl_align_contradicts(photos, e->train);
     for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
         size_t lens = (size_t)lens_of(e, i);
@@ -392,8 +390,7 @@ static enum orl_result fit_all(struct exposing *e)
         for (size_t i = 0; i < e->count; i++)
             e->photos[i].response = -1;
         result = fit_responses(e);
-        if (result == ORL_OK)
-            result = align(e);
+        ORL_THEN(result, align(e));
         bool again = false;
         if (result == ORL_OK && round == 0 && e->contradicted)
             result = heed_pictures(e, &again);

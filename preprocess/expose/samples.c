@@ -205,8 +205,7 @@ static enum orl_result take_photo(struct taking *t, const struct orl_sample_phot
     double eye[3];
     orl_pose_centre(&photo->view.cam_from_world, eye);
     enum orl_result result = make_pyramid(t->log, photo, &pyramid);
-    if (result == ORL_OK)
-        result = orl_depth_buffer_draw(t->log, &photo->view, t->points, &buffer);
+    ORL_THEN(result, orl_depth_buffer_draw(t->log, &photo->view, t->points, &buffer));
     for (size_t i = 0; result == ORL_OK && i < t->points->count; i += t->stride)
         result = take_point(t, index, &photo->view, eye, &buffer, &pyramid, i);
     orl_depth_buffer_finish(&buffer);
@@ -233,8 +232,7 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
             result = take_photo(&t, &photos[i], (uint32_t)i);
         orl_progress_report(progress, "expose", (double)(i + 1), (double)photo_count + 1, NULL);
     }
-    if (result == ORL_OK)
-        result = orl_samples_collect(log, t.items, t.item_points, t.count, points->count, samples);
+    ORL_THEN(result, orl_samples_collect(log, t.items, t.item_points, t.count, points->count, samples));
     free(t.items);
     free(t.item_points);
     return result;

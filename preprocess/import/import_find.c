@@ -485,12 +485,9 @@ enum orl_result orl_import_find_all(struct import_job *job)
 {
     char *dir = NULL;
     enum orl_result result = choose_folder(job, &dir);
-    if (result == ORL_OK)
-        result = find_pictures(job, dir);
-    if (result == ORL_OK)
-        result = name_views(job);
-    if (result == ORL_OK)
-        result = hold_out(job);
+    ORL_THEN(result, find_pictures(job, dir));
+    ORL_THEN(result, name_views(job));
+    ORL_THEN(result, hold_out(job));
     if (result == ORL_OK && job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence)
         result = find_stated_masks(job);
     if (result == ORL_OK && job->params->masks_dir)

@@ -17,14 +17,12 @@ enum orl_result orl_import_frames_open(const struct import_job *job, const struc
     enum orl_result result = ORL_OK;
     if (frames->temporary) {
         result = orl_dir_make(job->log, frames->dir);
-        if (result == ORL_OK)
-            result = orl_video_decode(job->log, job->progress, found->path, range, frames->dir);
+        ORL_THEN(result, orl_video_decode(job->log, job->progress, found->path, range, frames->dir));
     } else {
         frames->first = (size_t)range->first;
         frames->step = (size_t)range->step;
     }
-    if (result == ORL_OK)
-        result = orl_import_list_pictures(job->log, frames->dir, &frames->names);
+    ORL_THEN(result, orl_import_list_pictures(job->log, frames->dir, &frames->names));
     if (result == ORL_OK && frames->names.count <= frames->first)
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: %zu pictures, but the first frame asked for "
                           "is %zu", frames->dir, frames->names.count, frames->first);

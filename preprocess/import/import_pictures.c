@@ -71,9 +71,8 @@ static enum orl_result write_photo(const struct import_job *job, const struct im
         result = orl_file_copy(job->log, path, out);
     } else if (result == ORL_OK) {
         result = undistort(job, view, path, picture, &image);
-        if (result == ORL_OK)
-            result = orl_picture_is_png(view->name) ? orl_png_write(job->log, out, &image)
-                                        : orl_jpeg_write(job->log, out, &image, JPEG_QUALITY, NULL);
+        ORL_THEN(result, orl_picture_is_png(view->name) ? orl_png_write(job->log, out, &image)
+                                            : orl_jpeg_write(job->log, out, &image, JPEG_QUALITY, NULL));
     }
     orl_image_finish(&image);
     free(out);
@@ -91,12 +90,9 @@ static enum orl_result write_linear(const struct import_job *job, const struct i
     if (result != ORL_OK || info.bits <= 8 || view->composed)
         return result;
     result = output_path(job, "images_linear", -1, view->name, ".exr", &out);
-    if (result == ORL_OK)
-        result = orl_picture_read_linear(job->log, path, &light);
-    if (result == ORL_OK)
-        result = undistort(job, view, path, &light, &image);
-    if (result == ORL_OK)
-        result = orl_linear_write(job->log, out, &image);
+    ORL_THEN(result, orl_picture_read_linear(job->log, path, &light));
+    ORL_THEN(result, undistort(job, view, path, &light, &image));
+    ORL_THEN(result, orl_linear_write(job->log, out, &image));
     orl_image_finish(&light);
     orl_image_finish(&image);
     free(out);
@@ -110,8 +106,7 @@ static enum orl_result write_mask(const struct import_job *job, const struct imp
     struct orl_image image = {0};
     char *out = NULL;
     enum orl_result result = output_path(job, "masks", frame, view->name, ".png", &out);
-    if (result == ORL_OK)
-        result = undistort(job, view, path, mask, &image);
+    ORL_THEN(result, undistort(job, view, path, mask, &image));
     size_t count = result == ORL_OK ? orl_image_bytes(&image) : 0;
     for (size_t i = 0; i < count; i++) // resampling makes intermediate values
         image.u8[i] = image.u8[i] >= 128;
@@ -131,8 +126,7 @@ static enum orl_result add_background(const struct import_job *job, const char *
 {
     struct orl_image picture;
     enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
-    if (result == ORL_OK)
-        result = orl_background_add(job->log, background, &picture);
+    ORL_THEN(result, orl_background_add(job->log, background, &picture));
     orl_image_finish(&picture);
     return result;
 }
@@ -166,15 +160,12 @@ static enum orl_result write_background(const struct import_job *job,
     char *out = NULL;
     const struct orl_image *from = &background->mean;
     enum orl_result result = output_path(job, "background", -1, view->name, ".png", &out);
-    if (result == ORL_OK)
-        result = orl_image_init(job->log, &mean, from->width, from->height, 3, ORL_PIXEL_U8);
+    ORL_THEN(result, orl_image_init(job->log, &mean, from->width, from->height, 3, ORL_PIXEL_U8));
     size_t count = result == ORL_OK ? orl_image_bytes(&mean) : 0;
     for (size_t i = 0; i < count; i++)
         mean.u8[i] = (uint8_t)(from->f32[i] + 0.5f);
-    if (result == ORL_OK)
-        result = undistort(job, view, view->background.path, &mean, &image);
-    if (result == ORL_OK)
-        result = orl_png_write(job->log, out, &image);
+    ORL_THEN(result, undistort(job, view, view->background.path, &mean, &image));
+    ORL_THEN(result, orl_png_write(job->log, out, &image));
     orl_image_finish(&mean);
     orl_image_finish(&image);
     free(out);
@@ -265,8 +256,7 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
         orl_image_finish(&mask);
         result = orl_mask_read(job->log, mask_path, &mask);
     }
-    if (result == ORL_OK)
-        result = write_photo(job, view, frame, path, &picture);
+    ORL_THEN(result, write_photo(job, view, frame, path, &picture));
     // The scene's own pictures, shown before a frame is chosen, are those of the first frame.
     if (result == ORL_OK && frame == 0)
         result = write_photo(job, view, -1, path, &picture);
@@ -275,10 +265,8 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
         if (found)
             result = make_mask(job, path, mask_path, background, &picture, &mask);
         view->masked = true;
-        if (result == ORL_OK)
-            result = count_mask(job, mask_path ? mask_path : path, &mask);
-        if (result == ORL_OK)
-            result = write_mask(job, view, frame, mask_path ? mask_path : path, &mask);
+        ORL_THEN(result, count_mask(job, mask_path ? mask_path : path, &mask));
+        ORL_THEN(result, write_mask(job, view, frame, mask_path ? mask_path : path, &mask));
         if (result == ORL_OK && frame == 0)
             result = write_mask(job, view, -1, mask_path ? mask_path : path, &mask);
     }
@@ -337,8 +325,7 @@ static enum orl_result settle_camera(struct import_job *job, struct import_view 
         return result;
     result = orl_known_camera_settle(job->log, &job->known, view->camera, path, info.width,
                                      info.height);
-    if (result == ORL_OK)
-        result = check_lens(job, view, path);
+    ORL_THEN(result, check_lens(job, view, path));
     if (result == ORL_OK)
         *target = orl_import_target(camera_of(job, view), job->params->max_size);
     return result;
@@ -362,8 +349,7 @@ static enum orl_result import_time_steps(struct import_job *job, struct import_v
             result = ORL_ERR_MEMORY;
         else if (i == 0)
             result = settle_camera(job, view, path);
-        if (result == ORL_OK)
-            result = import_picture(job, view, (int)i, path, mask, background);
+        ORL_THEN(result, import_picture(job, view, (int)i, path, mask, background));
         free(path);
         free(mask);
     }
@@ -385,8 +371,7 @@ static enum orl_result import_sequence(struct import_job *job, struct import_vie
     if (result == ORL_OK && masks.count && masks.count != frames.count)
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: %zu masks, but %zu pictures",
                           view->mask.path, masks.count, frames.count);
-    if (result == ORL_OK)
-        result = import_time_steps(job, view, &frames, &masks, background);
+    ORL_THEN(result, import_time_steps(job, view, &frames, &masks, background));
     if (result == ORL_OK && job->frame_count && frames.count != job->frame_count)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: %zu pictures, but other cameras have %zu: what "
                  "not all have is left out", view->picture.path, frames.count, job->frame_count);
@@ -416,13 +401,9 @@ static enum orl_result import_view(struct import_job *job, struct import_view *v
         result = import_sequence(job, view, &background);
     else if (result == ORL_OK) {
         result = settle_camera(job, view, view->picture.path);
-        if (result == ORL_OK)
-            result = import_picture(job, view, -1, view->picture.path, view->mask.path,
-                                    &background);
-        if (result == ORL_OK)
-            result = write_linear(job, view);
-        if (result == ORL_OK)
-            result = read_orientation(job, view);
+        ORL_THEN(result, import_picture(job, view, -1, view->picture.path, view->mask.path, &background));
+        ORL_THEN(result, write_linear(job, view));
+        ORL_THEN(result, read_orientation(job, view));
     }
     if (result == ORL_OK && background.count)
         result = write_background(job, view, &background);
@@ -480,8 +461,7 @@ enum orl_result orl_import_pictures(struct import_job *job)
     }
     if (result == ORL_OK && job->sequence)
         result = drop_surplus(job);
-    if (result == ORL_OK)
-        result = judge_masks(job);
+    ORL_THEN(result, judge_masks(job));
     say_unusual(job);
     if (result == ORL_OK)
         orl_progress_report(job->progress, "import", 1, 1, NULL);

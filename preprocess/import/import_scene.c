@@ -76,8 +76,7 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
         }
         set_points(points, view->image->name, image);
     }
-    if (result == ORL_OK)
-        result = orl_colmap_write(job->log, dir, &model);
+    ORL_THEN(result, orl_colmap_write(job->log, dir, &model));
     free(model.cameras);
     free(model.images);
     free(dir);
@@ -112,14 +111,10 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
         orl_pose_centre(&views[count].cam_from_world, eyes[count]);
         count++;
     }
-    if (result == ORL_OK)
-        result = orl_points_drop_in_free_space(job->log, job->progress, views, count,
-                                               points);
-    if (result == ORL_OK)
-        result = orl_points_set_radii(job->log, job->progress, &radii, (const double (*)[3])eyes,
-                                      count, points);
-    if (result == ORL_OK)
-        result = orl_points_limit_radii(job->log, &limits, views, count, points);
+    ORL_THEN(result, orl_points_drop_in_free_space(job->log, job->progress, views, count, points));
+    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, &radii, (const double (*)[3])eyes,
+                                          count, points));
+    ORL_THEN(result, orl_points_limit_radii(job->log, &limits, views, count, points));
     free(eyes);
     free(views);
     return result;
@@ -140,8 +135,7 @@ enum orl_result orl_import_write_points(const struct import_job *job, size_t *co
                               job->params->points_file);
         else if (points.count)
             result = complete_points(job, &points);
-        if (result == ORL_OK)
-            result = orl_points_write(job->log, path, &points, false);
+        ORL_THEN(result, orl_points_write(job->log, path, &points, false));
         *count = points.count;
         orl_points_finish(&points);
     }
@@ -180,9 +174,8 @@ static enum orl_result carve_mesh(struct import_job *job, const char *folder,
     if (result == ORL_OK && !count)
         result = orl_fail(job->log, ORL_ERR_DATA, "a hull needs silhouettes, and no picture "
                           "has a mask or alpha: --masks, --silhouettes dark or --background");
-    if (result == ORL_OK)
-        result = orl_cones_mesh(job->log, silhouettes, count, job->params->hull_side,
-                                (size_t)job->params->hull_triangles, &job->said_endless, mesh);
+    ORL_THEN(result, orl_cones_mesh(job->log, silhouettes, count, job->params->hull_side,
+                                    (size_t)job->params->hull_triangles, &job->said_endless, mesh));
     for (size_t i = 0; i < count; i++)
         orl_image_finish(&silhouettes[i].mask);
     free(silhouettes);
@@ -199,8 +192,7 @@ static enum orl_result write_mesh(struct import_job *job, const char *folder,
     if (result == ORL_OK && !mesh.normal)
         result = orl_mesh_set_normals(job->log, &mesh);
     char *path = result == ORL_OK ? orl_import_path(job, "%smesh.ply", folder) : NULL;
-    if (result == ORL_OK)
-        result = path ? orl_mesh_write(job->log, path, &mesh) : ORL_ERR_MEMORY;
+    ORL_THEN(result, path ? orl_mesh_write(job->log, path, &mesh) : ORL_ERR_MEMORY);
     *triangles = mesh.triangle_count;
     free(path);
     orl_mesh_finish(&mesh);

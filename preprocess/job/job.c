@@ -113,8 +113,7 @@ enum orl_result orl_job_take_sources(struct orl_job *job)
     enum orl_result result = path ? orl_colmap_read(job->log, path, &job->sparse.model)
                                   : ORL_ERR_MEMORY;
     job->sparse.known = result == ORL_OK;
-    if (result == ORL_OK)
-        result = read_names(job, "stereo/fusion.cfg", &train);
+    ORL_THEN(result, read_names(job, "stereo/fusion.cfg", &train));
     const struct orl_colmap_model *model = &job->sparse.model;
     if (result == ORL_OK)
         job->sources = orl_array(job->log, model->image_count + 1, sizeof *job->sources);
@@ -230,8 +229,7 @@ enum orl_result orl_job_fresh_dir(const struct orl_job *job, const char *name)
 {
     char *path = orl_job_path(job, "%s", name);
     enum orl_result result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_dir_make(job->log, path);
+    ORL_THEN(result, orl_dir_make(job->log, path));
     free(path);
     return result;
 }
@@ -246,8 +244,7 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target, cons
     uint8_t *data;
     size_t size;
     enum orl_result result = orl_file_read(job->log, target, SIZE_MAX / 2, &data, &size);
-    if (result == ORL_OK)
-        result = orl_file_write(job->log, path, data, size);
+    ORL_THEN(result, orl_file_write(job->log, path, data, size));
     free(data);
     return result;
 }
@@ -362,8 +359,7 @@ enum orl_result orl_job_open_scene(struct orl_job *job, struct orl_scene **scene
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
         if (job->sources[i].test)
             result = orl_names_add(job->log, &test, job->sources[i].name);
-    if (result == ORL_OK)
-        result = orl_scene_open_unfinished(job->log, job->dir, model, &test, scene);
+    ORL_THEN(result, orl_scene_open_unfinished(job->log, job->dir, model, &test, scene));
     orl_names_finish(&test);
     return result;
 }

@@ -64,8 +64,7 @@ static enum orl_result read_light(const struct orl_job *job, const struct orl_so
         orl_file_read(NULL, path, sizeof line, &text, &size) == ORL_OK &&
         sscanf((const char *)text, "%lf", light) == 1 && isfinite(*light))
         goto end;
-    if (result == ORL_OK)
-        result = orl_picture_read_linear(job->log, source->path, &image);
+    ORL_THEN(result, orl_picture_read_linear(job->log, source->path, &image));
     if (result == ORL_OK) {
         *light = log_average(&image);
         int length = snprintf(line, sizeof line, "%a\n", *light);
@@ -124,15 +123,13 @@ static enum orl_result write_copy(const struct orl_job *job, const struct orl_so
 {
     struct orl_image linear = {0}, copy = {0};
     enum orl_result result = orl_develop_read(job, source, &linear);
-    if (result == ORL_OK)
-        result = orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8);
+    ORL_THEN(result, orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8));
     size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
     for (size_t i = 0; i < count; i++)
         copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear.f32[i]));
-    if (result == ORL_OK)
-        result = orl_picture_is_png(source->name)
-                     ? orl_png_write(job->log, path, &copy)
-                     : orl_jpeg_write(job->log, path, &copy, COPY_QUALITY, &source->exif);
+    ORL_THEN(result, orl_picture_is_png(source->name)
+                         ? orl_png_write(job->log, path, &copy)
+                         : orl_jpeg_write(job->log, path, &copy, COPY_QUALITY, &source->exif));
     orl_image_finish(&linear);
     orl_image_finish(&copy);
     return result;
@@ -167,8 +164,7 @@ enum orl_result orl_develop(struct orl_job *job)
     char *dir = orl_job_path(job, ".oriel/developed");
     enum orl_result result = dir ? orl_dir_make(job->log, dir) : ORL_ERR_MEMORY;
     free(dir);
-    if (result == ORL_OK)
-        result = choose_scale(job);
+    ORL_THEN(result, choose_scale(job));
     for (size_t i = 0; i < job->source_count && result == ORL_OK; i++) {
         struct orl_source *source = &job->sources[i];
         if (!needs_copy(source))

@@ -21,10 +21,8 @@ void orl_doubts_keep_look(const struct orl_job *job, const struct orl_source *so
     struct orl_look look;
     char *path = look_path(job, source), *dir = orl_job_path(job, ".oriel/looks");
     enum orl_result result = path && dir ? orl_look_make(NULL, luma, &look) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_dir_make(NULL, dir);
-    if (result == ORL_OK)
-        result = orl_file_write(NULL, path, &look, sizeof look);
+    ORL_THEN(result, orl_dir_make(NULL, dir));
+    ORL_THEN(result, orl_file_write(NULL, path, &look, sizeof look));
     if (result != ORL_OK)
         orl_logf(job->log, ORL_LOG_DEBUG, "%s: its look is not kept", source->name);
     free(path);
@@ -52,8 +50,7 @@ enum orl_result orl_doubts_look(const struct orl_job *job, const struct orl_sour
     } else if (result == ORL_OK) {
         struct orl_image luma = {0};
         result = orl_picture_read(job->log, source->path, 1, &luma);
-        if (result == ORL_OK)
-            result = orl_look_make(job->log, &luma, look);
+        ORL_THEN(result, orl_look_make(job->log, &luma, look));
         orl_image_finish(&luma);
     }
     free(data);
@@ -72,8 +69,7 @@ static enum orl_result find_blurred(const struct orl_job *job, const struct orl_
     for (size_t i = 0; result == ORL_OK && i < n; i++)
         sharpness[i] = looks[i].sharpness;
     float limit = 0;
-    if (result == ORL_OK)
-        result = orl_look_blurred_below(job->log, sharpness, n, &limit);
+    ORL_THEN(result, orl_look_blurred_below(job->log, sharpness, n, &limit));
     for (size_t i = 0; result == ORL_OK && i < n; i++) {
         doubts[i].blurred = sharpness[i] < limit;
         orl_logf(job->log, ORL_LOG_DEBUG, "%s: sharpness 2^%.2f", job->sources[i].name,
@@ -103,8 +99,7 @@ enum orl_result orl_doubts_find(const struct orl_job *job, struct orl_doubt *dou
         result = orl_progress_cancelled(job->progress)
                      ? ORL_ERR_CANCELLED
                      : orl_doubts_look(job, &job->sources[i], &looks[i]);
-    if (result == ORL_OK)
-        result = find_blurred(job, looks, doubts);
+    ORL_THEN(result, find_blurred(job, looks, doubts));
     if (result == ORL_OK)
         find_same(job, looks, doubts);
     free(looks);

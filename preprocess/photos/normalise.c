@@ -53,16 +53,14 @@ static enum orl_result write_copy(const struct orl_job *job, const struct orl_so
     struct orl_image linear = {0}, copy = {0};
     enum orl_result result = orl_picture_read_linear(
         job->log, source->original ? source->original : source->path, &linear);
-    if (result == ORL_OK)
-        result = orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8);
+    ORL_THEN(result, orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8));
     float factor = (float)(exp2(ev) * (source->unbounded ? job->linear_scale : 1));
     size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
     for (size_t i = 0; i < count; i++)
         copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
-    if (result == ORL_OK)
-        result = orl_picture_is_png(source->name)
-                     ? orl_png_write(job->log, path, &copy)
-                     : orl_jpeg_write(job->log, path, &copy, JPEG_QUALITY, &source->exif);
+    ORL_THEN(result, orl_picture_is_png(source->name)
+                         ? orl_png_write(job->log, path, &copy)
+                         : orl_jpeg_write(job->log, path, &copy, JPEG_QUALITY, &source->exif));
     orl_image_finish(&linear);
     orl_image_finish(&copy);
     return result;

@@ -70,8 +70,7 @@ static enum orl_result measure_blur(struct clip *clip)
                                 "-map", "0:V:0", "-vf", filter, "-f", "null", "/dev/null", NULL};
     enum orl_result result = filter ? run_tool(clip, argv, take_blur) : ORL_ERR_MEMORY;
     free(filter);
-    if (result == ORL_OK)
-        result = clip->result;
+    ORL_THEN(result, clip->result);
     if (result == ORL_OK && !clip->count)
         result = orl_fail(clip->job->log, ORL_ERR_DATA, "%s: no frame can be decoded", clip->path);
     return result;
@@ -129,8 +128,7 @@ static enum orl_result drop_still(const struct clip *clip, const char *dir)
         struct orl_look look;
         char *path = orl_path_join(log, dir, names.items[i]);
         result = path ? orl_picture_read(log, path, 1, &luma) : ORL_ERR_MEMORY;
-        if (result == ORL_OK)
-            result = orl_look_make(log, &luma, &look);
+        ORL_THEN(result, orl_look_make(log, &luma, &look));
         if (result == ORL_OK && i && orl_look_same_picture(&last, &look)) {
             dropped += unlink(path) == 0;
         } else if (result == ORL_OK) {
@@ -201,10 +199,8 @@ enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **di
         static const char temp[] = ".oriel/frames.tmp";
         char *made = orl_job_path(job, "%s", temp), *parent = orl_job_path(job, ".oriel/frames");
         result = made && parent ? orl_dir_make(job->log, parent) : ORL_ERR_MEMORY;
-        if (result == ORL_OK)
-            result = orl_job_fresh_dir(job, temp);
-        if (result == ORL_OK)
-            result = make_frames(&clip, made);
+        ORL_THEN(result, orl_job_fresh_dir(job, temp));
+        ORL_THEN(result, make_frames(&clip, made));
         if (result == ORL_OK)
             result = orl_flush(job->log, made); // ffmpeg does not
         if (result == ORL_OK && rename(made, *dir) != 0)
@@ -213,8 +209,7 @@ enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **di
         free(made);
         free(parent);
     }
-    if (result == ORL_OK)
-        result = orl_dir_list(job->log, *dir, names);
+    ORL_THEN(result, orl_dir_list(job->log, *dir, names));
     free(clip.blur);
     return result;
 }

@@ -198,10 +198,8 @@ enum orl_result orl_file_copy(const struct orl_log *log, const char *from, const
     uint8_t *data = NULL;
     size_t size = 0;
     enum orl_result result = orl_file_read(log, from, SIZE_MAX / 2, &data, &size);
-    if (result == ORL_OK)
-        result = orl_file_make_folder(log, to);
-    if (result == ORL_OK)
-        result = orl_file_write(log, to, data, size);
+    ORL_THEN(result, orl_file_make_folder(log, to));
+    ORL_THEN(result, orl_file_write(log, to, data, size));
     free(data);
     return result;
 }

@@ -36,8 +36,7 @@ enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_
     uint8_t *data = NULL;
     size_t size;
     enum orl_result result = orl_file_read(log, path, JSON_MAX_BYTES, &data, &size);
-    if (result == ORL_OK)
-        result = orl_json_parse(log, path, data, size, out);
+    ORL_THEN(result, orl_json_parse(log, path, data, size, out));
     free(data);
     if (result != ORL_OK || json_is_object(*out))
         return result;

@@ -117,13 +117,10 @@ static enum orl_result begin(const struct orl_log *log, const char *out, bool ov
     *dir = (struct orl_new_dir){.fd = -1};
     enum orl_result result = named ? orl_path_follow(log, named, &dir->out) : ORL_ERR_MEMORY;
     char *parent = result == ORL_OK ? parent_of(log, dir->out) : NULL;
-    if (result == ORL_OK)
-        result = parent ? orl_dir_make(log, parent) : ORL_ERR_MEMORY;
+    ORL_THEN(result, parent ? orl_dir_make(log, parent) : ORL_ERR_MEMORY);
     int lock = result == ORL_OK ? lock_parent(parent) : -1;
-    if (result == ORL_OK)
-        result = meet_others(log, parent, dir->out, over);
-    if (result == ORL_OK)
-        result = make(log, dir);
+    ORL_THEN(result, meet_others(log, parent, dir->out, over));
+    ORL_THEN(result, make(log, dir));
     if (lock >= 0)
         close(lock);
     if (result != ORL_OK)

@@ -48,8 +48,7 @@ static enum orl_result draw(struct orl_gpu *gpu, const struct orl_scene *scene,
     orl_render_params_tuned(log, method, scene, &params.render);
     params.render.sample = ORL_SAMPLE_RADIANCE;
     enum orl_result result = orl_hdr_create(gpu, scene, &params, &hdr);
-    if (result == ORL_OK)
-        result = orl_hdr_draw_panorama(hdr, panorama, NULL, frame);
+    ORL_THEN(result, orl_hdr_draw_panorama(hdr, panorama, NULL, frame));
     orl_hdr_destroy(&hdr);
     return result;
 }
@@ -67,11 +66,8 @@ ORL_EXPORT_WRITER(orl_export_hdri)
     if (!orl_frame_can_write(params->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .exr or .png", params->out);
     enum orl_result result = orl_panorama_place(log, scene, at, &panorama);
-    if (result == ORL_OK)
-        result = orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = params->shader_dir},
-                                &gpu);
-    if (result == ORL_OK)
-        result = draw(gpu, scene, &panorama, &frame);
+    ORL_THEN(result, orl_gpu_create(log, &(struct orl_gpu_params){.shader_dir = params->shader_dir}, &gpu));
+    ORL_THEN(result, draw(gpu, scene, &panorama, &frame));
     if (result == ORL_OK) {
         output.attributes.latlong = orl_panorama_view(&panorama, &view);
         result = orl_frame_write(log, params->out, &view, &frame, &output);

@@ -78,10 +78,8 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
         orl_progress_report(progress, "export", (double)(i + 1), (double)scene->photo_count,
                             scene->photos[i].name);
     }
-    if (result == ORL_OK)
-        result = orl_points_write_from(log, points, &scene->points, scene->origin);
-    if (result == ORL_OK)
-        result = orl_json_write(log, file, root);
+    ORL_THEN(result, orl_points_write_from(log, points, &scene->points, scene->origin));
+    ORL_THEN(result, orl_json_write(log, file, root));
     json_decref(root);
     free(points);
     free(file);
@@ -92,10 +90,8 @@ ORL_EXPORT_WRITER(orl_export_nerfstudio)
 {
     struct orl_new_dir dir;
     enum orl_result result = orl_new_dir_begin(log, params->out, &dir);
-    if (result == ORL_OK)
-        result = fill(log, progress, scene, dir.path);
-    if (result == ORL_OK)
-        result = orl_new_dir_finish(log, &dir);
+    ORL_THEN(result, fill(log, progress, scene, dir.path));
+    ORL_THEN(result, orl_new_dir_finish(log, &dir));
     orl_new_dir_abort(log, &dir);
     return result;
 }

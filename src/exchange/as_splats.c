@@ -68,8 +68,7 @@ ORL_EXPORT_WRITER(orl_export_splats)
     struct orl_atomic_file file = {0};
     enum orl_result result =
         orl_gaussians_fit(log, progress, scene, params->degree < 0 ? 1 : params->degree, &g);
-    if (result == ORL_OK)
-        result = orl_atomic_begin(log, params->out, &file);
+    ORL_THEN(result, orl_atomic_begin(log, params->out, &file));
     if (result == ORL_OK) {
         FILE *stream = orl_atomic_stream(&file);
         bool good = stream && write_all(stream, &g, params->thin);

@@ -147,8 +147,7 @@ static enum orl_result read_picture(const struct fit *fit, size_t photo, struct 
     char *path = orl_scene_photo_path(fit->log, fit->scene, photo);
     char *before = of->occluded > 0 ? orl_scene_occluders_path(fit->log, fit->scene, photo) : NULL;
     enum orl_result result = path && (before || !(of->occluded > 0)) ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_picture_read(fit->log, path, 3, &p->image);
+    ORL_THEN(result, orl_picture_read(fit->log, path, 3, &p->image));
     if (result == ORL_OK && (p->image.width != of->view.camera.width ||
                              p->image.height != of->view.camera.height))
         result = orl_fail(fit->log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
@@ -171,8 +170,7 @@ static enum orl_result add_photo(const struct fit *fit, size_t photo)
     double eye[3];
     orl_pose_centre(&of->view.cam_from_world, eye);
     enum orl_result result = read_picture(fit, photo, &p);
-    if (result == ORL_OK)
-        result = orl_depth_buffer_draw(fit->log, &of->view, &fit->scene->points, &buffer);
+    ORL_THEN(result, orl_depth_buffer_draw(fit->log, &of->view, &fit->scene->points, &buffer));
     for (size_t i = fit->first; result == ORL_OK && i < fit->end; i++)
         add(fit, of, &p, eye, &buffer, i);
     orl_depth_buffer_finish(&buffer);

@@ -199,8 +199,7 @@ enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *w
     *width = *height = 0;
     struct exr_reader reader = {.log = log, .path = path};
     enum orl_result result = start(&reader);
-    if (result == ORL_OK)
-        result = check_window(&reader, width, height);
+    ORL_THEN(result, check_window(&reader, width, height));
     if (reader.context)
         exr_finish(&reader.context);
     return result;
@@ -236,8 +235,7 @@ enum orl_result orl_exr_read(const struct orl_log *log, const char *path,
     struct exr_reader reader = {.log = log, .path = path, .names = channels, .count = count,
                                 .image = image};
     enum orl_result result = start(&reader);
-    if (result == ORL_OK)
-        result = read_part(&reader);
+    ORL_THEN(result, read_part(&reader));
     if (reader.pipe_ready)
         exr_decoding_destroy(reader.context, &reader.pipe);
     if (reader.context)

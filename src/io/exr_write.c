@@ -296,17 +296,14 @@ enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
     errno = 0; // it tells why OpenEXR cannot write
     result = check(&writer, exr_start_write(&writer.context, file.temp, EXR_WRITE_FILE_DIRECTLY,
                                             &init));
-    if (result == ORL_OK)
-        result = write_all(&writer);
+    ORL_THEN(result, write_all(&writer));
     if (writer.pipe_ready)
         exr_encoding_destroy(writer.context, &writer.pipe);
     if (writer.context) {
         exr_result_t code = exr_finish(&writer.context); // writes the chunk table
-        if (result == ORL_OK)
-            result = check(&writer, code);
+        ORL_THEN(result, check(&writer, code));
     }
-    if (result == ORL_OK)
-        result = orl_atomic_commit(log, &file);
+    ORL_THEN(result, orl_atomic_commit(log, &file));
     orl_atomic_abort(&file);
     free(writer.rows);
     return result;

@@ -99,8 +99,7 @@ static enum orl_result read_exif(const struct heif_file *file, struct orl_exif *
         return ORL_ERR_MEMORY;
     enum orl_result result =
         check(file, heif_image_handle_get_metadata(file->picture, id, block));
-    if (result == ORL_OK)
-        result = decode_exif(file, block, size, exif);
+    ORL_THEN(result, decode_exif(file, block, size, exif));
     free(block);
     return result;
 }
@@ -208,22 +207,15 @@ enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *pa
     struct orl_profile *profile = NULL;
     enum orl_result result = open_heif(log, path, &file);
     // Bytes per pixel: planes and RGB of up to 16 bits each, and three floats.
-    if (result == ORL_OK)
-        result = orl_picture_check_memory(log, path, file.width, file.height,
-                                          6 + 6 + 3 * sizeof(float));
-    if (result == ORL_OK)
-        result = check_curve(&file);
-    if (result == ORL_OK)
-        result = make_profile(&file, &profile);
-    if (result == ORL_OK)
-        result = check(&file, heif_decode_image(file.picture, &decoded, heif_colorspace_RGB,
-                                                file.bits > 8
-                                                    ? heif_chroma_interleaved_RRGGBB_LE
-                                                    : heif_chroma_interleaved_RGB, NULL));
-    if (result == ORL_OK)
-        result = orl_image_init(log, image, (int)file.width, (int)file.height, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = take_pixels(&file, decoded, !profile, image);
+    ORL_THEN(result, orl_picture_check_memory(log, path, file.width, file.height, 6 + 6 + 3 * sizeof(float)));
+    ORL_THEN(result, check_curve(&file));
+    ORL_THEN(result, make_profile(&file, &profile));
+    ORL_THEN(result, check(&file, heif_decode_image(file.picture, &decoded, heif_colorspace_RGB,
+                                                    file.bits > 8
+                                                        ? heif_chroma_interleaved_RRGGBB_LE
+                                                        : heif_chroma_interleaved_RGB, NULL)));
+    ORL_THEN(result, orl_image_init(log, image, (int)file.width, (int)file.height, 3, ORL_PIXEL_F32));
+    ORL_THEN(result, take_pixels(&file, decoded, !profile, image));
     if (result == ORL_OK && profile)
         orl_profile_apply(profile, image);
     heif_image_release(decoded);

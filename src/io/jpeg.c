@@ -275,8 +275,7 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
                         path, JPEG_MAX_DIMENSION);
     if (exif)
         result = orl_exif_encode(log, exif, &out.exif, &out.exif_size);
-    if (result == ORL_OK)
-        result = orl_atomic_begin(log, path, &file);
+    ORL_THEN(result, orl_atomic_begin(log, path, &file));
     if (result != ORL_OK)
         goto end;
     out.stream = orl_atomic_stream(&file);
@@ -288,8 +287,7 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
     jpeg_destroy_compress(&info);
     if (fclose(out.stream) != 0 && result == ORL_OK)
         result = orl_fail(log, ORL_ERR_IO, "%s: cannot write all of it: %s", path, strerror(errno));
-    if (result == ORL_OK)
-        result = orl_atomic_commit(log, &file);
+    ORL_THEN(result, orl_atomic_commit(log, &file));
 end:
     orl_atomic_abort(&file);
     free(out.exif);

@@ -419,8 +419,7 @@ enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *pat
     enum orl_result result = ORL_OK;
     if (format == FORMAT_PNG) {
         result = orl_file_read(log, path, max_file_bytes, &data, &size);
-        if (result == ORL_OK)
-            result = orl_png_decode_rgba(log, path, data, size, &from);
+        ORL_THEN(result, orl_png_decode_rgba(log, path, data, size, &from));
     } else if (format == FORMAT_JPEG || format == FORMAT_PNM) {
         result = orl_picture_read(log, path, 3, &from);
     } else {
@@ -429,8 +428,7 @@ enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *pat
         for (size_t i = 0; i < count; i++)
             from.f32[i] = orl_srgb_encode(from.f32[i]);
     }
-    if (result == ORL_OK)
-        result = to_rgba(log, &from, image);
+    ORL_THEN(result, to_rgba(log, &from, image));
     if (result != ORL_OK)
         orl_image_finish(image);
     orl_image_finish(&from);

@@ -190,8 +190,7 @@ enum orl_result orl_png_read_header(const struct orl_log *log, const char *path,
 {
     struct png_job job = {.log = log, .path = path};
     enum orl_result result = start_reading(&job);
-    if (result == ORL_OK)
-        result = read_header(&job, stream, header);
+    ORL_THEN(result, read_header(&job, stream, header));
     end_reading(&job);
     return result;
 }
@@ -267,8 +266,7 @@ enum orl_result orl_png_decode(const struct orl_log *log, const char *path, cons
 {
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
-    if (result == ORL_OK)
-        result = decode(&job, size, 3, false, image);
+    ORL_THEN(result, decode(&job, size, 3, false, image));
     end_reading(&job);
     return result == ORL_OK && channels == 1 ? to_luma(log, image) : result;
 }
@@ -294,8 +292,7 @@ enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *pat
 {
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
-    if (result == ORL_OK)
-        result = decode(&job, size, 3, true, image);
+    ORL_THEN(result, decode(&job, size, 3, true, image));
     end_reading(&job);
     if (result != ORL_OK)
         return result;
@@ -313,8 +310,7 @@ enum orl_result orl_png_decode_rgba(const struct orl_log *log, const char *path,
     const size_t depth_at = 24; // of the header, which has a fixed length
     bool deep = size > depth_at && data[depth_at] == 16;
     enum orl_result result = start_reading(&job);
-    if (result == ORL_OK)
-        result = decode(&job, size, 4, deep, image);
+    ORL_THEN(result, decode(&job, size, 4, deep, image));
     end_reading(&job);
     if (result == ORL_OK && deep)
         to_floats(&job, image);
@@ -365,8 +361,7 @@ enum orl_result orl_png_write(const struct orl_log *log, const char *path,
     png_destroy_write_struct(&job.png, &job.info);
     if (fclose(stream) != 0 && result == ORL_OK)
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    if (result == ORL_OK)
-        result = orl_atomic_commit(log, &file);
+    ORL_THEN(result, orl_atomic_commit(log, &file));
 end:
     orl_atomic_abort(&file);
     return result;

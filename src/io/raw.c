@@ -76,10 +76,8 @@ enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
     bool damaged = false;
     enum orl_result result = open_raw(log, path, &damaged, &raw);
     int flip = raw ? raw->sizes.flip : 0; // read before LibRaw replaces it by user_flip
-    if (result == ORL_OK)
-        result = check(log, path, libraw_adjust_sizes_info_only(raw));
-    if (result == ORL_OK)
-        result = orl_picture_check_size(log, path, raw->sizes.iwidth, raw->sizes.iheight);
+    ORL_THEN(result, check(log, path, libraw_adjust_sizes_info_only(raw)));
+    ORL_THEN(result, orl_picture_check_size(log, path, raw->sizes.iwidth, raw->sizes.iheight));
     if (result == ORL_OK) {
         *info = (struct orl_picture_info){.width = raw->sizes.iwidth,
                                           .height = raw->sizes.iheight, .bits = 16};
@@ -106,8 +104,7 @@ static enum orl_result take_pixels(const struct orl_log *log, const char *path,
         from->data_size / 2 < (gray ? count / 3 : count))
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: RAW: not a colour picture", path);
     enum orl_result result = orl_picture_check_size(log, path, from->width, from->height);
-    if (result == ORL_OK)
-        result = orl_image_init(log, image, from->width, from->height, 3, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, image, from->width, from->height, 3, ORL_PIXEL_F32));
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         uint16_t value;
         memcpy(&value, from->data + 2 * (gray ? i / 3 : i), sizeof value);
@@ -125,21 +122,17 @@ enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *pat
     int code = LIBRAW_SUCCESS;
     enum orl_result result = open_raw(log, path, &damaged, &raw);
     // Bytes per pixel: a raw sample, four 16-bit samples, a bitmap of three, and three floats.
-    if (result == ORL_OK)
-        result = orl_picture_check_memory(log, path, raw->sizes.raw_width, raw->sizes.raw_height,
-                                          2 + 8 + 6 + 3 * sizeof(float));
-    if (result == ORL_OK)
-        result = check(log, path, libraw_unpack(raw));
+    ORL_THEN(result, orl_picture_check_memory(log, path, raw->sizes.raw_width, raw->sizes.raw_height,
+                                              2 + 8 + 6 + 3 * sizeof(float)));
+    ORL_THEN(result, check(log, path, libraw_unpack(raw)));
     if (result == ORL_OK && damaged)
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: RAW: the file is damaged or cut off", path);
-    if (result == ORL_OK)
-        result = check(log, path, libraw_dcraw_process(raw));
+    ORL_THEN(result, check(log, path, libraw_dcraw_process(raw)));
     if (result == ORL_OK) {
         bitmap = libraw_dcraw_make_mem_image(raw, &code);
         result = check(log, path, code);
     }
-    if (result == ORL_OK)
-        result = bitmap ? take_pixels(log, path, bitmap, image) : ORL_ERR_MEMORY;
+    ORL_THEN(result, bitmap ? take_pixels(log, path, bitmap, image) : ORL_ERR_MEMORY);
     if (bitmap)
         libraw_dcraw_clear_mem(bitmap);
     if (raw)

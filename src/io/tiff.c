@@ -159,8 +159,7 @@ enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
 {
     struct tiff_job job = {.log = log, .path = path};
     enum orl_result result = open_tiff(&job);
-    if (result == ORL_OK)
-        result = read_header(&job);
+    ORL_THEN(result, read_header(&job));
     if (result == ORL_OK) {
         *info = (struct orl_picture_info){.width = (int)job.width, .height = (int)job.height,
                                           .bits = job.bits,
@@ -284,18 +283,14 @@ enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *pa
     struct orl_profile *profile = NULL;
     uint32_t size = 0;
     enum orl_result result = open_tiff(&job);
-    if (result == ORL_OK)
-        result = read_header(&job);
+    ORL_THEN(result, read_header(&job));
     const void *icc = result == ORL_OK ? find_profile(&job, &size) : NULL;
     if (icc)
         profile = orl_profile_create(log, path, icc, size);
     job.encoded = profile != NULL;
-    if (result == ORL_OK)
-        result = orl_picture_check_memory(log, path, job.width, job.height, 3 * sizeof(float));
-    if (result == ORL_OK)
-        result = orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = TIFFIsTiled(job.tiff) ? read_tiles(&job, image) : read_rows(&job, image);
+    ORL_THEN(result, orl_picture_check_memory(log, path, job.width, job.height, 3 * sizeof(float)));
+    ORL_THEN(result, orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32));
+    ORL_THEN(result, TIFFIsTiled(job.tiff) ? read_tiles(&job, image) : read_rows(&job, image));
     if (result == ORL_OK && profile)
         orl_profile_apply(profile, image);
     orl_profile_destroy(&profile);

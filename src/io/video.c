@@ -195,8 +195,7 @@ enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_pro
         result = orl_process_run(log, &(struct orl_process_params){.argv = argv,
                                                                    .progress = progress}, NULL);
     }
-    if (result == ORL_OK)
-        result = orl_atomic_commit(log, &file);
+    ORL_THEN(result, orl_atomic_commit(log, &file));
     orl_atomic_abort(&file);
     free(pattern);
     return result;
@@ -227,8 +226,7 @@ enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_pro
                  : ORL_ERR_MEMORY;
     free(filters);
     free(pattern);
-    if (result == ORL_OK)
-        result = orl_dir_list(log, frames_dir, &names);
+    ORL_THEN(result, orl_dir_list(log, frames_dir, &names));
     if (result == ORL_OK && !names.count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: this clip has no frame %d", path, range->first);
     orl_names_finish(&names);

@@ -180,8 +180,7 @@ enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
                         "%s: no COLMAP model here (neither cameras.bin nor cameras.txt)", dir);
     enum orl_result result = kind ? orl_colmap_read_binary(log, dir, model)
                                   : orl_colmap_read_text(log, dir, model);
-    if (result == ORL_OK)
-        result = orl_colmap_check(log, dir, model);
+    ORL_THEN(result, orl_colmap_check(log, dir, model));
     if (result != ORL_OK)
         orl_colmap_finish(model);
     return result;

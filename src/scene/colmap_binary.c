@@ -206,8 +206,7 @@ enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *di
         if (files[i].optional && !orl_colmap_has(log, dir, files[i].name))
             continue;
         result = reader_open(log, dir, files[i].name, &r);
-        if (result == ORL_OK)
-            result = files[i].read(&r, model);
+        ORL_THEN(result, files[i].read(&r, model));
         if (result == ORL_OK && r.at != r.size)
             result = bad(&r, "bytes after the end of the model");
         reader_close(&r);

@@ -207,8 +207,7 @@ enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *pat
     if (result == ORL_OK && orl_path_is_file(beside) &&
         (result = orl_text_open(log, beside, &l)) == ORL_OK) {
         result = read_cameras(&l, model);
-        if (result == ORL_OK)
-            result = orl_colmap_sort_cameras(log, beside, model);
+        ORL_THEN(result, orl_colmap_sort_cameras(log, beside, model));
         orl_text_close(&l);
     }
     if (result == ORL_OK && (result = orl_text_open(log, path, &l)) == ORL_OK) {

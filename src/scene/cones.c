@@ -229,8 +229,7 @@ enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silho
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_cone_make(log, &silhouettes[i], &cones->all[i]);
-    if (result == ORL_OK)
-        result = find_bounds(log, centre, reach, cones);
+    ORL_THEN(result, find_bounds(log, centre, reach, cones));
     if (result != ORL_OK)
         orl_cones_finish(cones);
     return result;
@@ -252,8 +251,7 @@ enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silho
     struct orl_hull cube = {.side = side, .voxel = cones.bounds.size / side};
     memcpy(cube.origin, cones.bounds.origin, sizeof cube.origin);
     enum orl_result result = orl_cones_field(log, &cones, side, &field);
-    if (result == ORL_OK)
-        result = orl_hull_field_mesh(log, &cube, field, triangles, mesh);
+    ORL_THEN(result, orl_hull_field_mesh(log, &cube, field, triangles, mesh));
     free(field);
     orl_cones_finish(&cones);
     return result;

@@ -67,8 +67,7 @@ enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_
         result = orl_fail(log, ORL_ERR_DATA, "the hull is empty");
     if (result == ORL_OK && triangles)
         result = orl_mesh_decimate(log, triangles, mesh);
-    if (result == ORL_OK)
-        result = orl_mesh_set_normals(log, mesh);
+    ORL_THEN(result, orl_mesh_set_normals(log, mesh));
     if (result != ORL_OK)
         orl_mesh_finish(mesh);
     return result;

@@ -79,8 +79,7 @@ static enum orl_result read_colmap(const struct orl_known_source *source,
     enum orl_result result = dir ? orl_colmap_read(source->log, *dir ? dir : ".", &known->model)
                                  : ORL_ERR_MEMORY;
     free(dir);
-    if (result == ORL_OK)
-        result = mend_names(source, &known->model);
+    ORL_THEN(result, mend_names(source, &known->model));
     if (result == ORL_OK) {
         known->gaps = orl_array(source->log, known->model.camera_count, sizeof *known->gaps);
         result = known->gaps ? ORL_OK : ORL_ERR_MEMORY;
@@ -176,8 +175,7 @@ static enum orl_result read_json(const struct orl_known_source *source,
     size_t size;
     json_t *root = NULL;
     enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
-    if (result == ORL_OK)
-        result = orl_json_parse(source->log, source->path, data, size, &root);
+    ORL_THEN(result, orl_json_parse(source->log, source->path, data, size, &root));
     free(data);
     if (result != ORL_OK)
         return result;
@@ -403,10 +401,8 @@ enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *pa
         result = orl_fail(log, ORL_ERR_DATA, "%s: no camera in it", path);
     if (result == ORL_OK && known->pictures)
         result = orl_known_name_images(log, path, known);
-    if (result == ORL_OK)
-        result = orl_colmap_check(log, path, &known->model);
-    if (result == ORL_OK)
-        result = orl_known_place(log, known);
+    ORL_THEN(result, orl_colmap_check(log, path, &known->model));
+    ORL_THEN(result, orl_known_place(log, known));
     if (result != ORL_OK)
         orl_known_cameras_finish(known);
     return result;

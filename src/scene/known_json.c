@@ -197,8 +197,7 @@ static enum orl_result read_list(struct entry *e, const json_t *list, const char
             return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s has no \"%s\"", e->file, e->place,
                             name_key);
         result = read(e, item, &camera);
-        if (result == ORL_OK)
-            result = orl_known_add(e->log, e->file, e->place, &camera, known);
+        ORL_THEN(result, orl_known_add(e->log, e->file, e->place, &camera, known));
     }
     return result;
 }
@@ -212,10 +211,8 @@ enum orl_result orl_known_read_own(const struct orl_known_source *source,
     const json_t *list = json_object_get(source->root, "cameras");
     struct entry e;
     enum orl_result result = begin(source, 0, &e);
-    if (result == ORL_OK)
-        result = read_list(&e, list, "name", read_own, known);
-    if (result == ORL_OK)
-        result = orl_manifest_read_room(source->log, source->path, source->root, &known->room);
+    ORL_THEN(result, read_list(&e, list, "name", read_own, known));
+    ORL_THEN(result, orl_manifest_read_room(source->log, source->path, source->root, &known->room));
     orl_known_look_for_unused(&unused, source->root);
     for (size_t i = 0; i < json_array_size(list); i++)
         orl_known_look_for_unused(&unused, json_array_get(list, i));
@@ -231,8 +228,7 @@ enum orl_result orl_known_read_inria(const struct orl_known_source *source,
     struct orl_known_unused unused = {.used = used};
     struct entry e;
     enum orl_result result = begin(source, 0.5, &e);
-    if (result == ORL_OK)
-        result = read_list(&e, source->root, "img_name", read_inria, known);
+    ORL_THEN(result, read_list(&e, source->root, "img_name", read_inria, known));
     for (size_t i = 0; i < json_array_size(source->root); i++)
         orl_known_look_for_unused(&unused, json_array_get(source->root, i));
     orl_known_say_unused(source, &unused);
@@ -327,8 +323,7 @@ static enum orl_result read_frames(const struct orl_known_source *source,
         any = any || camera.split != ORL_KNOWN_UNUSED;
         held_out = held_out || camera.split == ORL_KNOWN_TEST;
         result = read_nerfstudio(&e, root, frame, &camera);
-        if (result == ORL_OK)
-            result = orl_known_add(e.log, e.file, e.place, &camera, known);
+        ORL_THEN(result, orl_known_add(e.log, e.file, e.place, &camera, known));
     }
     if (result != ORL_OK)
         return result;
@@ -377,8 +372,7 @@ enum orl_result orl_known_read_splits(const struct orl_known_source *source,
         if (path && orl_path_is_file(path)) {
             result = orl_json_read(source->log, path, &root);
             part.root = root;
-            if (result == ORL_OK)
-                result = read_frames(&part, split, known);
+            ORL_THEN(result, read_frames(&part, split, known));
             tests = tests || split == ORL_KNOWN_TEST;
         }
         json_decref(root);

@@ -99,10 +99,8 @@ enum orl_result orl_known_read_llff(const struct orl_known_source *source,
     size_t size, count = 0, at = 0;
     struct orl_names names = {0};
     enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
-    if (result == ORL_OK)
-        result = find_numbers(source, data, size, &count, &at);
-    if (result == ORL_OK)
-        result = list_pictures(source, known->folder, &names);
+    ORL_THEN(result, find_numbers(source, data, size, &count, &at));
+    ORL_THEN(result, list_pictures(source, known->folder, &names));
     if (result == ORL_OK && names.count != count)
         result = orl_fail(source->log, ORL_ERR_DATA, "%s: %zu cameras, but images/ has %zu files",
                           source->path, count, names.count);

@@ -371,8 +371,7 @@ enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
                  source->path, m.without, json_array_size(views));
     if (result == ORL_OK)
         say_unused_of_meshroom(source);
-    if (result == ORL_OK)
-        result = read_structure(&m, &known->model);
+    ORL_THEN(result, read_structure(&m, &known->model));
     json_decref(m.lenses);
     json_decref(m.poses);
     json_decref(m.images);

@@ -111,8 +111,7 @@ enum orl_result orl_known_read_nvm(const struct orl_known_source *source,
 {
     struct orl_text_lines l;
     enum orl_result result = orl_text_open(source->log, source->path, &l);
-    if (result == ORL_OK)
-        result = read_nvm(&l, known);
+    ORL_THEN(result, read_nvm(&l, known));
     orl_text_close(&l);
     return result;
 }
@@ -235,8 +234,7 @@ enum orl_result orl_known_read_realityscan(const struct orl_known_source *source
     struct orl_text_lines l;
     struct heads heads;
     enum orl_result result = orl_text_open(source->log, source->path, &l);
-    if (result == ORL_OK)
-        result = read_heads(&l, &heads);
+    ORL_THEN(result, read_heads(&l, &heads));
     while (result == ORL_OK && orl_text_next(&l))
         result = read_row(&l, &heads, known);
     orl_text_close(&l);

@@ -135,8 +135,7 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
     snprintf(place, sizeof place, "line %zu: camera %zu", b->l.number, index);
     for (int i = 0; result == ORL_OK && i < 3; i++)
         result = next_numbers(&b->l, r[i], 3, "a row of R needs 3 numbers");
-    if (result == ORL_OK)
-        result = next_numbers(&b->l, t, 3, "t needs 3 numbers");
+    ORL_THEN(result, next_numbers(&b->l, t, 3, "t needs 3 numbers"));
     b->image_of[index] = -1;
     if (result != ORL_OK || f_k[0] == 0) // not registered
         return result;
@@ -220,10 +219,8 @@ enum orl_result orl_known_read_bundler(const struct orl_known_source *source,
 {
     struct bundler b = {0};
     enum orl_result result = orl_text_open(source->log, source->path, &b.l);
-    if (result == ORL_OK)
-        result = read_list(source->log, known->folder, &b.pictures);
-    if (result == ORL_OK)
-        result = read_bundle(&b, known);
+    ORL_THEN(result, read_list(source->log, known->folder, &b.pictures));
+    ORL_THEN(result, read_bundle(&b, known));
     orl_text_close(&b.l);
     orl_names_finish(&b.pictures);
     free(b.image_of);

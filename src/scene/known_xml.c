@@ -320,12 +320,10 @@ enum orl_result orl_known_read_metashape(const struct orl_known_source *source,
     uint8_t *data = NULL;
     size_t size;
     enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
-    if (result == ORL_OK)
-        result = parse(&r, data, size);
+    ORL_THEN(result, parse(&r, data, size));
     if (result == ORL_OK && !r.chunks)
         result = orl_fail(source->log, ORL_ERR_FORMAT, "%s: not Metashape's cameras: no <chunk>", source->path);
-    if (result == ORL_OK)
-        result = add_cameras(&r, known);
+    ORL_THEN(result, add_cameras(&r, known));
     for (size_t i = 0; i < r.camera_count; i++)
         free(r.cameras[i].label);
     free(r.cameras);

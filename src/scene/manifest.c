@@ -313,20 +313,13 @@ enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, c
         result = orl_fail(log, ORL_ERR_FORMAT,
                           "%s: format version %lld is newer than this program knows (%d)", path,
                           (long long)json_integer_value(version), ORL_MANIFEST_VERSION);
-    if (result == ORL_OK)
-        result = read_responses(log, path, root, scene);
-    if (result == ORL_OK)
-        result = read_photos(log, path, root, scene);
-    if (result == ORL_OK)
-        result = orl_tuned_read(log, path, root, scene);
-    if (result == ORL_OK)
-        result = read_ground(log, path, root, &scene->ground);
-    if (result == ORL_OK)
-        result = read_backdrop(log, path, root, &scene->backdrop_rests);
-    if (result == ORL_OK)
-        result = orl_manifest_read_room(log, path, root, &scene->room);
-    if (result == ORL_OK)
-        result = read_origin(log, path, root, scene->origin);
+    ORL_THEN(result, read_responses(log, path, root, scene));
+    ORL_THEN(result, read_photos(log, path, root, scene));
+    ORL_THEN(result, orl_tuned_read(log, path, root, scene));
+    ORL_THEN(result, read_ground(log, path, root, &scene->ground));
+    ORL_THEN(result, read_backdrop(log, path, root, &scene->backdrop_rests));
+    ORL_THEN(result, orl_manifest_read_room(log, path, root, &scene->room));
+    ORL_THEN(result, read_origin(log, path, root, scene->origin));
     return result;
 }
 
@@ -342,9 +335,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, b
     json_t *root;
     ORL_TRY(orl_json_read(log, path, &root));
     enum orl_result result = orl_manifest_take(log, path, root, scene);
-    if (result == ORL_OK)
-        result = check_files(log, scene->dir, root, points ? read_on_opening : without_points,
-                             ORL_LOG_WARNING, &changed);
+    ORL_THEN(result, check_files(log, scene->dir, root, points ? read_on_opening : without_points,
+                                 ORL_LOG_WARNING, &changed));
     json_decref(root);
     return result;
 }

@@ -86,8 +86,7 @@ enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
     fclose(stream);
     enum orl_result result = got == 3 && strcmp(magic, "ply") == 0 ? orl_mesh_read_ply(log, path, &builder)
                                                                    : orl_mesh_read_obj(log, path, &builder);
-    if (result == ORL_OK)
-        result = check(log, path, &builder.mesh);
+    ORL_THEN(result, check(log, path, &builder.mesh));
     if (result == ORL_OK)
         *mesh = builder.mesh;
     else

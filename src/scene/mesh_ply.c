@@ -66,8 +66,7 @@ static enum orl_result read_faces(struct orl_ply *ply, const struct orl_ply_elem
     enum orl_result result = ORL_OK;
     for (uint64_t i = 0; result == ORL_OK && i < element->count; i++) {
         result = orl_ply_record(ply, element, record, at, &list);
-        if (result == ORL_OK)
-            result = orl_grow(ply->log, (void **)&corners, &capacity, list.count, sizeof *corners);
+        ORL_THEN(result, orl_grow(ply->log, (void **)&corners, &capacity, list.count, sizeof *corners));
         for (size_t k = 0; result == ORL_OK && k < list.count; k++) {
             double index = list.items[k];
             if (!(index >= 0 && index < (double)builder->mesh.vertex_count))
@@ -75,8 +74,7 @@ static enum orl_result read_faces(struct orl_ply *ply, const struct orl_ply_elem
             else
                 corners[k] = (uint32_t)index;
         }
-        if (result == ORL_OK)
-            result = orl_mesh_add_polygon(ply->log, builder, corners, list.count);
+        ORL_THEN(result, orl_mesh_add_polygon(ply->log, builder, corners, list.count));
     }
     free(corners);
     free(list.items);
@@ -90,12 +88,9 @@ enum orl_result orl_mesh_read_ply(const struct orl_log *log, const char *path,
     const struct orl_ply_element *vertex = NULL, *face = NULL;
     ORL_TRY(orl_ply_open(log, path, &ply));
     enum orl_result result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
-    if (result == ORL_OK)
-        result = read_vertices(&ply, vertex, builder);
-    if (result == ORL_OK)
-        result = orl_ply_seek(&ply, "face", "no faces after the vertices", &face);
-    if (result == ORL_OK)
-        result = read_faces(&ply, face, builder);
+    ORL_THEN(result, read_vertices(&ply, vertex, builder));
+    ORL_THEN(result, orl_ply_seek(&ply, "face", "no faces after the vertices", &face));
+    ORL_THEN(result, read_faces(&ply, face, builder));
     orl_ply_close(&ply);
     return result;
 }

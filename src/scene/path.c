@@ -374,8 +374,7 @@ static enum orl_result read_colmap_text(const struct orl_log *log, const struct 
     enum orl_result result = orl_colmap_read_poses(log, file, &model);
     if (result == ORL_OK && !model.image_count)
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: no camera in it", file);
-    if (result == ORL_OK)
-        result = allocate(log, model.image_count, path);
+    ORL_THEN(result, allocate(log, model.image_count, path));
     for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
         const struct orl_colmap_image *image = &model.images[i];
         const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(&model, image->camera_id);
@@ -407,8 +406,7 @@ enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene 
         result = read_colmap_text(log, scene, file, path);
     } else if ((result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size)) == ORL_OK) {
         result = orl_json_parse(log, file, text, size, &root);
-        if (result == ORL_OK)
-            result = read_json(log, scene, file, root, path);
+        ORL_THEN(result, read_json(log, scene, file, root, path));
     }
     if (result != ORL_OK)
         orl_path_finish(path);

@@ -143,8 +143,7 @@ enum orl_result orl_ply_open(const struct orl_log *log, const char *path, struct
     enum orl_result result = ply->path ? orl_file_read(log, path, SIZE_MAX / 2, &ply->data,
                                                        &ply->size)
                                        : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = parse_header(ply);
+    ORL_THEN(result, parse_header(ply));
     if (result != ORL_OK)
         orl_ply_close(ply);
     return result;

@@ -116,10 +116,8 @@ enum orl_result orl_lod_open(const struct orl_log *log, const char *path, struct
     enum orl_result result = lod->path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && (lod->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK)) < 0)
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    if (result == ORL_OK)
-        result = read_header(lod, &header);
-    if (result == ORL_OK)
-        result = read_table(lod, &header);
+    ORL_THEN(result, read_header(lod, &header));
+    ORL_THEN(result, read_table(lod, &header));
     if (result != ORL_OK)
         orl_lod_close(out);
     return result;
@@ -244,8 +242,7 @@ enum orl_result orl_lod_read_cloud(const struct orl_log *log, const char *dir, s
     memset(points, 0, sizeof *points);
     if (result == ORL_OK && orl_path_is_file(paged)) {
         result = orl_lod_open(log, paged, &lod);
-        if (result == ORL_OK)
-            result = orl_lod_sample(lod, most, points);
+        ORL_THEN(result, orl_lod_sample(lod, most, points));
         orl_lod_close(&lod);
     } else if (result == ORL_OK) {
         result = orl_points_read(log, whole, points);

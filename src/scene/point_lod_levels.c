@@ -70,8 +70,7 @@ enum orl_result orl_lod_levels_begin(const struct orl_log *log, const char *path
     l->path = orl_strdup(log, path);
     enum orl_result result = l->path ? orl_points_init(log, &l->taken, ORL_BLOCK_POINTS)
                                      : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = add_level(l, file);
+    ORL_THEN(result, add_level(l, file));
     if (result != ORL_OK)
         orl_lod_levels_destroy(out);
     return result;

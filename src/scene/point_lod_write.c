@@ -48,10 +48,9 @@ static enum orl_result set_radii(struct writer *w, size_t part)
     float *scales = NULL;
     enum orl_result result = orl_point_parts_read(&w->parts, part, true, &points, &scales);
     size_t own = orl_point_parts_own(&w->parts, part);
-    if (result == ORL_OK)
-        result = orl_points_set_some_radii(w->log, NULL, &params->radii,
-                                           (const double (*)[3])w->viewers, params->view_count, own,
-                                           &points);
+    ORL_THEN(result, orl_points_set_some_radii(w->log, NULL, &params->radii,
+                                               (const double (*)[3])w->viewers, params->view_count, own,
+                                               &points));
     if (result == ORL_OK) {
         points.count = own;
         orl_disc_sizes_add(&w->sizes, params->views, params->view_count, &points, scales);
@@ -72,8 +71,7 @@ static enum orl_result find_radii(struct writer *w)
     enum orl_result result = w->viewers ? orl_disc_sizes_init(w->log, &w->sizes) : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < params->view_count; i++)
         orl_pose_centre(&params->views[i].cam_from_world, w->viewers[i]);
-    if (result == ORL_OK)
-        result = for_parts(w, "radii", set_radii);
+    ORL_THEN(result, for_parts(w, "radii", set_radii));
     if (result == ORL_OK)
         w->limits = orl_radii_limits_widened(&limits, &w->sizes);
     return result;
@@ -168,8 +166,7 @@ enum orl_result orl_lod_write(const struct orl_log *log, const struct orl_progre
         (result = find_radii(&w)) == ORL_OK &&
         (result = for_parts(&w, "blocks", add_blocks)) == ORL_OK)
         result = orl_lod_levels_end(w.levels);
-    if (result == ORL_OK)
-        result = orl_atomic_commit(log, &w.out);
+    ORL_THEN(result, orl_atomic_commit(log, &w.out));
     finish(&w);
     return result;
 }

@@ -73,16 +73,14 @@ static enum orl_result find_cube(struct maker *m)
     for (uint64_t k = 0; result == ORL_OK && k < SAMPLE_READS; k++) {
         if (step > SAMPLE_POINTS)
             result = orl_point_stream_seek(m->stream, k * step);
-        if (result == ORL_OK)
-            result = orl_point_stream_next(m->stream, SAMPLE_POINTS, &m->read, &read);
+        ORL_THEN(result, orl_point_stream_next(m->stream, SAMPLE_POINTS, &m->read, &read));
         for (size_t i = 0; result == ORL_OK && i < m->read.count; i++)
             orl_points_copy(&m->read, i, &sample, count++);
     }
     sample.count = count;
     if (result == ORL_OK && !count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: no usable points", m->parts->path);
-    if (result == ORL_OK)
-        result = orl_point_cube_find(log, &sample, &m->parts->cube);
+    ORL_THEN(result, orl_point_cube_find(log, &sample, &m->parts->cube));
     orl_points_finish(&sample);
     return result;
 }
@@ -175,8 +173,7 @@ static enum orl_result for_all(struct maker *m, const char *step,
         result = orl_progress_cancelled(m->progress)
                      ? ORL_ERR_CANCELLED
                      : orl_point_stream_next(m->stream, READ_POINTS, &m->read, &read);
-        if (result == ORL_OK)
-            result = use(m);
+        ORL_THEN(result, use(m));
         done += read;
     }
     return result;
@@ -341,10 +338,8 @@ enum orl_result orl_point_parts_make(const struct orl_log *log, const struct orl
     m.part_of = orl_array(log, CELLS, sizeof *m.part_of);
     m.border = orl_array(log, CELLS, sizeof *m.border);
     enum orl_result result = m.counts && m.part_of && m.border ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_point_stream_open(log, ply, &m.stream, &m.records);
-    if (result == ORL_OK)
-        result = orl_points_init(log, &m.read, READ_POINTS);
+    ORL_THEN(result, orl_point_stream_open(log, ply, &m.stream, &m.records));
+    ORL_THEN(result, orl_points_init(log, &m.read, READ_POINTS));
     if (result == ORL_OK && (result = open_file(parts)) == ORL_OK &&
         (result = find_cube(&m)) == ORL_OK &&
         (result = for_all(&m, "count", count_cells)) == ORL_OK &&
@@ -428,8 +423,7 @@ enum orl_result orl_point_parts_read(const struct point_parts *parts, size_t ind
     points->count = 0;
     if (result == ORL_OK && !*scales)
         result = ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = read_run(parts, &part->own, points, *scales);
+    ORL_THEN(result, read_run(parts, &part->own, points, *scales));
     if (result == ORL_OK && around)
         result = read_run(parts, &part->around, points, NULL);
     if (result != ORL_OK) {

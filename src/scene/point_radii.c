@@ -222,8 +222,7 @@ enum orl_result orl_points_set_some_radii(const struct orl_log *log,
         result = orl_progress_cancelled(progress) ? ORL_ERR_CANCELLED
                                                   : search_chunk(&s, first, count);
     }
-    if (result == ORL_OK)
-        result = fill_radii(&s, own);
+    ORL_THEN(result, fill_radii(&s, own));
     if (result == ORL_OK)
         orl_progress_report(progress, "radii", (double)own, (double)own,
                             NULL);

@@ -163,10 +163,8 @@ static enum orl_result write_points(const struct orl_log *log, const char *path,
 {
     struct orl_point_writer writer;
     enum orl_result result = begin(log, path, points->count, small, origin, &writer);
-    if (result == ORL_OK)
-        result = orl_point_writer_add(&writer, points);
-    if (result == ORL_OK)
-        result = orl_point_writer_end(&writer);
+    ORL_THEN(result, orl_point_writer_add(&writer, points));
+    ORL_THEN(result, orl_point_writer_end(&writer));
     orl_point_writer_finish(&writer);
     return result;
 }

@@ -182,19 +182,15 @@ enum orl_result orl_points_read_from(const struct orl_log *log, const char *path
     int property[ROLE_COUNT];
     ORL_TRY(orl_ply_open(log, path, &ply));
     enum orl_result result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
-    if (result == ORL_OK)
-        result = find_vertices(&ply, vertex, property);
+    ORL_THEN(result, find_vertices(&ply, vertex, property));
     if (result == ORL_OK && memcmp(origin, nowhere, sizeof nowhere) != 0 &&
         vertex->properties[property[X]].type == ORL_PLY_FLOAT32)
         orl_logf(log, ORL_LOG_WARNING, "%s: its coordinates are 32-bit floats, which are too coarse so far "
                  "from 0: write doubles", path);
-    if (result == ORL_OK)
-        result = orl_points_init(log, points, (size_t)vertex->count);
+    ORL_THEN(result, orl_points_init(log, points, (size_t)vertex->count));
     double color_scale;
-    if (result == ORL_OK)
-        result = find_color_scale(&ply, vertex, property, &color_scale);
-    if (result == ORL_OK)
-        result = read_points(&ply, vertex, property, origin, color_scale, points);
+    ORL_THEN(result, find_color_scale(&ply, vertex, property, &color_scale));
+    ORL_THEN(result, read_points(&ply, vertex, property, origin, color_scale, points));
     if (result != ORL_OK)
         orl_points_finish(points);
     orl_ply_close(&ply);
@@ -235,8 +231,7 @@ enum orl_result orl_point_stream_open(const struct orl_log *log, const char *pat
                              strcmp(s->ply.elements[0].name, "vertex") != 0))
         result = orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: only a binary PLY whose vertices come "
                           "first can be read a part at a time", path);
-    if (result == ORL_OK)
-        result = find_vertices(&s->ply, &s->ply.elements[0], s->property);
+    ORL_THEN(result, find_vertices(&s->ply, &s->ply.elements[0], s->property));
     if (result == ORL_OK) {
         s->records_at = s->ply.at;
         *total = s->ply.elements[0].count;

@@ -138,10 +138,8 @@ enum orl_result orl_points_find_radii(const struct orl_log *log, const struct or
     enum orl_result result =
         orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
                              (const double (*)[3])viewers, view_count, points);
-    if (result == ORL_OK)
-        result = orl_points_limit_radii(log,
-                                        &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS},
-                                        views, view_count, points);
+    ORL_THEN(result, orl_points_limit_radii(log, &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS},
+                                            views, view_count, points));
     free(viewers);
     return result;
 }

@@ -35,8 +35,7 @@ enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap
     bool shrinks = to->fx < 0.999 * size->fx || to->fy < 0.999 * size->fy;
     struct orl_camera full = shrinks ? orl_camera_resized(to, size->width, size->height) : *to;
     enum orl_result result = make_map(log, from, &full, &map);
-    if (result == ORL_OK)
-        result = orl_bridge_remap(log, image, &map, &warped);
+    ORL_THEN(result, orl_bridge_remap(log, image, &map, &warped));
     if (result == ORL_OK && (to->width != full.width || to->height != full.height))
         result = orl_bridge_reduce(log, &warped, to->width, to->height, undistorted);
     else if (result == ORL_OK) {

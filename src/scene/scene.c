@@ -72,11 +72,9 @@ static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *
     if (result == ORL_OK && !there)
         result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
                           scene->dir, photo->name);
-    if (result == ORL_OK)
-        result = check_if_there(log, scene, orl_scene_linear_path(log, scene, i), &linear);
+    ORL_THEN(result, check_if_there(log, scene, orl_scene_linear_path(log, scene, i), &linear));
     photo->linear = result == ORL_OK && linear && !shows_time_step(scene);
-    if (result == ORL_OK)
-        result = check_if_there(log, scene, orl_scene_mask_path(log, scene, i), &masked);
+    ORL_THEN(result, check_if_there(log, scene, orl_scene_mask_path(log, scene, i), &masked));
     return result;
 }
 
@@ -257,10 +255,8 @@ static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene
     struct orl_view *views;
     size_t count;
     enum orl_result result = orl_scene_training_views(log, scene, &views, &count);
-    if (result == ORL_OK)
-        result = orl_points_drop_in_free_space(log, NULL, views, count, &scene->points);
-    if (result == ORL_OK)
-        result = orl_points_find_radii(log, views, count, &scene->points);
+    ORL_THEN(result, orl_points_drop_in_free_space(log, NULL, views, count, &scene->points));
+    ORL_THEN(result, orl_points_find_radii(log, views, count, &scene->points));
     free(views);
     return result;
 }
@@ -309,10 +305,8 @@ enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl
     char *first = sparse ? orl_path_join(log, sparse, "0") : NULL;
     const char *dir = first && orl_path_is_dir(first) ? first : sparse;
     enum orl_result result = first ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = check_files_inside(log, scene, dir);
-    if (result == ORL_OK)
-        result = orl_colmap_read(log, dir, model);
+    ORL_THEN(result, check_files_inside(log, scene, dir));
+    ORL_THEN(result, orl_colmap_read(log, dir, model));
     free(first);
     free(sparse);
     return result;
@@ -400,10 +394,8 @@ static enum orl_result open_scene(const struct orl_log *log, const char *dir, bo
     struct folder folder = {0};
     struct orl_colmap_model model = {0};
     enum orl_result result = create(log, dir, out);
-    if (result == ORL_OK)
-        result = look(log, dir, points, &folder);
-    if (result == ORL_OK)
-        result = fill(log, *out, points, &model, &folder);
+    ORL_THEN(result, look(log, dir, points, &folder));
+    ORL_THEN(result, fill(log, *out, points, &model, &folder));
     orl_colmap_finish(&model);
     free(folder.manifest);
     free(folder.points);
@@ -429,8 +421,7 @@ enum orl_result orl_scene_open_model(const struct orl_log *log, const char *dir,
                                      const struct orl_colmap_model *model, struct orl_scene **out)
 {
     enum orl_result result = create(log, dir, out);
-    if (result == ORL_OK)
-        result = set_photos(log, *out, model);
+    ORL_THEN(result, set_photos(log, *out, model));
     if (result != ORL_OK)
         orl_scene_destroy(out);
     return result;
@@ -449,8 +440,7 @@ enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char 
         result = orl_lod_open(log, lod, &(*out)->lod);
     for (size_t i = 0; result == ORL_OK && i < (*out)->photo_count; i++)
         (*out)->photos[i].test = test && orl_names_contain(test, (*out)->photos[i].name);
-    if (result == ORL_OK)
-        result = add_points(log, *out, model, points, true);
+    ORL_THEN(result, add_points(log, *out, model, points, true));
     free(points);
     free(lod);
     if (result != ORL_OK)

@@ -111,9 +111,8 @@ enum orl_result orl_background_add(const struct orl_log *log, struct orl_backgro
     enum orl_result result = ORL_OK;
     if (!b->count) {
         result = orl_image_init(log, &b->mean, picture->width, picture->height, 3, ORL_PIXEL_F32);
-        if (result == ORL_OK)
-            result = orl_image_init(log, &b->deviation, picture->width, picture->height, 3,
-                                    ORL_PIXEL_F32);
+        ORL_THEN(result, orl_image_init(log, &b->deviation, picture->width, picture->height, 3,
+                                        ORL_PIXEL_F32));
         if (result != ORL_OK)
             return result;
     }

@@ -68,13 +68,11 @@ enum orl_result orl_subset_write_model(const struct orl_log *log, const struct o
     struct orl_colmap_model all = {0};
     char *sparse = orl_path_join(log, dir, "sparse");
     enum orl_result result = sparse ? orl_dir_make(log, sparse) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_scene_read_model(log, scene, &all);
+    ORL_THEN(result, orl_scene_read_model(log, scene, &all));
     // Photographs and the images of the model have equal indices.
     if (result == ORL_OK && all.image_count != scene->photo_count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: its sparse model has changed", scene->dir);
-    if (result == ORL_OK)
-        result = write_kept(log, &all, keep, sparse);
+    ORL_THEN(result, write_kept(log, &all, keep, sparse));
     orl_colmap_finish(&all);
     free(sparse);
     return result;
@@ -132,8 +130,7 @@ static enum orl_result read_manifest(const struct orl_log *log, const struct orl
     if (path && !orl_path_is_file(path))
         result = orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
                           scene->dir);
-    if (result == ORL_OK)
-        result = orl_json_read(log, path, manifest);
+    ORL_THEN(result, orl_json_read(log, path, manifest));
     free(path);
     return result;
 }
@@ -145,12 +142,9 @@ enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_sce
     if (scene->frame_count)
         return orl_fail(log, ORL_ERR_DATA, "%s: is a sequence", scene->dir);
     enum orl_result result = read_manifest(log, scene, manifest);
-    if (result == ORL_OK)
-        result = copy_if_there(log, scene, orl_path_join(log, scene->dir, "points.ply"), dir);
-    if (result == ORL_OK)
-        result = copy_if_there(log, scene, orl_scene_mesh_path(log, scene), dir);
-    if (result == ORL_OK)
-        result = orl_subset_write_model(log, scene, keep, dir);
+    ORL_THEN(result, copy_if_there(log, scene, orl_path_join(log, scene->dir, "points.ply"), dir));
+    ORL_THEN(result, copy_if_there(log, scene, orl_scene_mesh_path(log, scene), dir));
+    ORL_THEN(result, orl_subset_write_model(log, scene, keep, dir));
     if (result == ORL_OK) {
         orl_subset_keep_photographs(scene, keep, *manifest);
         json_object_del(*manifest, "tuned"); // other photographs want other settings

@@ -50,13 +50,10 @@ static enum orl_result read_defaults(const struct orl_log *log, const char *path
     const json_t *render = json_object_get(root, "render");
     int bits = 32;
     enum orl_result result = read_name(&place, render, "method", &defaults->method);
-    if (result == ORL_OK)
-        result = read_name(&place, render, "textures", &defaults->textures);
-    if (result == ORL_OK)
-        result = orl_json_integer(&place, render, "depth_divide", 1, DEPTH_DIVIDE_MAX,
-                                  &defaults->depth_divide);
-    if (result == ORL_OK)
-        result = orl_json_integer(&place, render, "depth_bits", 16, 32, &bits);
+    ORL_THEN(result, read_name(&place, render, "textures", &defaults->textures));
+    ORL_THEN(result, orl_json_integer(&place, render, "depth_divide", 1, DEPTH_DIVIDE_MAX,
+                                      &defaults->depth_divide));
+    ORL_THEN(result, orl_json_integer(&place, render, "depth_bits", 16, 32, &bits));
     defaults->depth_half = bits < 32;
     return result;
 }
@@ -78,8 +75,7 @@ enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, cons
     enum orl_result result = read_defaults(log, path, root, &scene->defaults);
     json_object_foreach(all, method, record)
         json_object_foreach(json_object_get(record, "settings"), key, value)
-            if (result == ORL_OK)
-                result = add(log, path, method, key, value, scene);
+            ORL_THEN(result, add(log, path, method, key, value, scene));
     return result;
 }
 

@@ -43,8 +43,7 @@ enum orl_result orl_views_choose(const struct orl_log *log, const struct orl_sce
     size_t photo;
     if (choice->at) {
         result = find_photo(log, scene, choice->at, &photo);
-        if (result == ORL_OK)
-            result = single_view(log, &scene->photos[photo].view, path);
+        ORL_THEN(result, single_view(log, &scene->photos[photo].view, path));
     } else if (choice->path && strcmp(choice->path, "photos") == 0) {
         result = orl_path_through_photos(log, scene, (size_t)choice->frames, path);
     } else if (choice->path && strcmp(choice->path, "circle") == 0) {
