@@ -158,16 +158,15 @@ static enum orl_result write_time_step(const struct job *job, int frame)
 
 static enum orl_result write_all(const struct job *job)
 {
-    enum orl_result result = make_folders(job);
-    ORL_THEN(result, write_cameras(job));
-    ORL_THEN(result, write_backgrounds(job));
-    for (int f = 0; result == ORL_OK && f < job->params->frames; f++) {
+    ORL_TRY(make_folders(job));
+    ORL_TRY(write_cameras(job));
+    ORL_TRY(write_backgrounds(job));
+    for (int f = 0; f < job->params->frames; f++) {
         orl_progress_report(job->progress, "figures", f, job->params->frames, NULL);
-        result = write_time_step(job, f);
+        ORL_TRY(write_time_step(job, f));
     }
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "figures", 1, 1, NULL);
-    return result;
+    orl_progress_report(job->progress, "figures", 1, 1, NULL);
+    return ORL_OK;
 }
 
 enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_progress *progress,

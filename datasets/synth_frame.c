@@ -129,9 +129,7 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
                        {synth->truth, 0, GL_WRITE_ONLY}},
             .groups = {orl_groups((size_t)synth->width, TILE), orl_groups((size_t)rows, TILE)},
             .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
-        enum orl_result result = orl_gpu_finish(synth->gpu);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(orl_gpu_finish(synth->gpu));
     }
     return ORL_OK;
 }

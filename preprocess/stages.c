@@ -306,9 +306,7 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
     bool settled[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
     current[ORL_STAGE_COLLECT] = true;
     for (int i = 1; i < ORL_STAGE_COUNT; i++) {
-        enum orl_result result = look_for(job, (enum orl_stage_id)i, &there[i]);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(look_for(job, (enum orl_stage_id)i, &there[i]));
     }
     // Fuse reads the depth maps, which may be deleted after it.
     if ((!there[ORL_STAGE_FUSE] || job->params->keep == ORL_KEEP_ALL) && !orl_job_has(job, "stereo/.oriel-key"))
@@ -430,10 +428,9 @@ static void drop_dependents(const struct orl_job *job, enum orl_stage_id id, boo
 // Of a stage that is no longer wanted. Its record is gone already.
 static enum orl_result remove_results(const struct orl_job *job, enum orl_stage_id id)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t k = 0; result == ORL_OK && stages[id].results[k]; k++)
-        result = orl_job_remove(job, stages[id].results[k]);
-    return result;
+    for (size_t k = 0; stages[id].results[k]; k++)
+        ORL_TRY(orl_job_remove(job, stages[id].results[k]));
+    return ORL_OK;
 }
 
 // `before`: the records of earlier runs. The stage's new record and the removal of the records that
@@ -491,15 +488,14 @@ enum orl_result orl_stages_run(struct orl_job *job)
 enum orl_result orl_stages_run_points(struct orl_job *job)
 {
     bool current[ORL_STAGE_COUNT] = {0};
-    enum orl_result result = ORL_OK;
-    for (int i = ORL_STAGE_DENSIFY; result == ORL_OK && i < ORL_STAGE_COUNT; i++) {
+    for (int i = ORL_STAGE_DENSIFY; i < ORL_STAGE_COUNT; i++) {
         if (!is_wanted(job, i))
             continue;
-        result = orl_progress_cancelled(job->progress)
-                     ? ORL_ERR_CANCELLED
-                     : redo_stage(job, (enum orl_stage_id)i, NULL, current);
+        ORL_TRY(orl_progress_cancelled(job->progress)
+                    ? ORL_ERR_CANCELLED
+                    : redo_stage(job, (enum orl_stage_id)i, NULL, current));
     }
-    return result;
+    return ORL_OK;
 }
 
 // Texts that follow "oriel prepare" so that it does the same again in any folder.

@@ -178,13 +178,12 @@ static bool all(const struct calibration *c)
 // Marks the database as whole for these inputs and settings.
 static enum orl_result set_mark(const struct calibration *c, bool matched)
 {
+    if (!matched)
+        return orl_job_remove(c->job, WORK "/matched");
     char *path = orl_job_path(c->job, WORK "/matched"), *work = orl_job_path(c->job, WORK);
     const char *key = c->job->keys[ORL_STAGE_CALIBRATE];
-    enum orl_result result = path && work ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !matched)
-        result = orl_dir_remove(c->job->log, path);
-    else if (result == ORL_OK && (result = orl_flush(c->job->log, work)) == ORL_OK)
-        result = orl_file_write(c->job->log, path, key, strlen(key));
+    enum orl_result result = path && work ? orl_flush(c->job->log, work) : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_file_write(c->job->log, path, key, strlen(key)));
     free(path);
     free(work);
     return result;
@@ -193,14 +192,9 @@ static enum orl_result set_mark(const struct calibration *c, bool matched)
 static enum orl_result restart_database(struct calibration *c)
 {
     c->features++;
-    static const char *const names[] = {"database.db", "database.db-wal", "database.db-shm"};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(names); i++) {
-        char *path = orl_job_path(c->job, WORK "/%s", names[i]);
-        result = path ? orl_dir_remove(c->job->log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    return result;
+    ORL_TRY(orl_job_remove(c->job, WORK "/database.db"));
+    ORL_TRY(orl_job_remove(c->job, WORK "/database.db-wal"));
+    return orl_job_remove(c->job, WORK "/database.db-shm");
 }
 
 static enum orl_result extract_all(const struct calibration *c, bool costly)

@@ -96,17 +96,16 @@ enum orl_result orl_undistort_companions(struct orl_job *job, enum orl_companion
         count += has(orl_job_find(job, model->images[i].name), which);
     if (!count)
         return ORL_OK;
-    enum orl_result result = orl_job_fresh_dir(job, out);
-    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+    ORL_TRY(orl_job_fresh_dir(job, out));
+    for (size_t i = 0; i < model->image_count; i++) {
         const struct orl_colmap_image *image = &model->images[i];
         if (!has(orl_job_find(job, image->name), which))
             continue;
         if (orl_progress_cancelled(job->progress))
             return ORL_ERR_CANCELLED;
         orl_progress_report(job->progress, step, (double)(*written)++, (double)count, image->name);
-        result = write_one(job, which, model, image, out);
+        ORL_TRY(write_one(job, which, model, image, out));
     }
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, step, 1, 1, NULL);
-    return result;
+    orl_progress_report(job->progress, step, 1, 1, NULL);
+    return ORL_OK;
 }

@@ -151,15 +151,14 @@ static enum orl_result verify(struct orl_job *job, const char *name,
 enum orl_result orl_match_list(struct orl_job *job, const char *database,
                                const struct orl_pair_list *list)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t first = 0; result == ORL_OK && first < list->count; first += RUN_PAIRS) {
+    for (size_t first = 0; first < list->count; first += RUN_PAIRS) {
         size_t count = list->count - first < RUN_PAIRS ? list->count - first : RUN_PAIRS;
         // A CUDA build of COLMAP matches faster on its GPU.
         if (!job->colmap_cuda)
-            result = match_features(job, database, list, first, count);
-        ORL_THEN(result, verify(job, database, list, first, count));
+            ORL_TRY(match_features(job, database, list, first, count));
+        ORL_TRY(verify(job, database, list, first, count));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result read_photos(const struct orl_job *job, const char *database,

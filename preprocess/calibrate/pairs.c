@@ -65,11 +65,9 @@ static enum orl_result propose(struct choice *c, size_t tried, uint32_t a, uint3
 {
     if (a == b || find_pair(c, tried, a, b))
         return ORL_OK;
-    enum orl_result result = orl_grow(c->log, (void **)&c->pairs, &c->capacity, c->pair_count + 1,
-                                      sizeof *c->pairs);
-    if (result == ORL_OK)
-        c->pairs[c->pair_count++] = (struct orl_preempt_pair){a < b ? a : b, a < b ? b : a, 0};
-    return result;
+    ORL_TRY(ORL_GROW(c->log, c->pairs, c->capacity, c->pair_count));
+    c->pairs[c->pair_count++] = (struct orl_preempt_pair){a < b ? a : b, a < b ? b : a, 0};
+    return ORL_OK;
 }
 
 // Matches what was proposed since `tried`.
@@ -202,15 +200,13 @@ static enum orl_result expand(struct choice *c)
 
 static enum orl_result try_pairs(struct choice *c)
 {
-    enum orl_result result;
-    if ((result = propose_near(c, unlikeness, ALIKE)) != ORL_OK ||
-        (result = propose_near(c, time_apart, NEAR)) != ORL_OK ||
-        (result = propose_near(c, place_apart, NEAR)) != ORL_OK ||
-        (result = try_proposed(c, 0)) != ORL_OK)
-        return result;
-    for (int round = 0; result == ORL_OK && round < EXPANSIONS; round++)
-        result = expand(c);
-    return result == ORL_OK ? make_links(c) : result;
+    ORL_TRY(propose_near(c, unlikeness, ALIKE));
+    ORL_TRY(propose_near(c, time_apart, NEAR));
+    ORL_TRY(propose_near(c, place_apart, NEAR));
+    ORL_TRY(try_proposed(c, 0));
+    for (int round = 0; round < EXPANSIONS; round++)
+        ORL_TRY(expand(c));
+    return make_links(c);
 }
 
 // --- which of them to choose ---

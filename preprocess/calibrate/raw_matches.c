@@ -72,16 +72,15 @@ static void match_pairs(void *priv, bool caller)
 static enum orl_result read_features(struct work *work, struct orl_database *db,
                                      const char *const *names)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < work->count; i++) {
+    for (size_t i = 0; i < work->count; i++) {
         const uint32_t ends[] = {work->pairs[i].a, work->pairs[i].b};
-        for (int k = 0; result == ORL_OK && k < 2; k++)
+        for (int k = 0; k < 2; k++)
             if (!work->photos[ends[k]].id)
-                result = orl_database_features(db, names[ends[k]], &work->photos[ends[k]]);
-        ORL_THEN(result, orl_database_has_matches(db, work->photos[ends[0]].id,
-                                                  work->photos[ends[1]].id, &work->found[i].there));
+                ORL_TRY(orl_database_features(db, names[ends[k]], &work->photos[ends[k]]));
+        ORL_TRY(orl_database_has_matches(db, work->photos[ends[0]].id,
+                                         work->photos[ends[1]].id, &work->found[i].there));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result write_all(const struct work *work, struct orl_database *db)

@@ -34,15 +34,14 @@ struct photo {
 static enum orl_result open_luma(const struct orl_log *log, const struct orl_image *small,
                                  const bool *open, struct orl_image *luma)
 {
-    enum orl_result result = orl_image_init(log, luma, small->width, small->height, 2,
-                                            ORL_PIXEL_F32);
-    for (int i = 0; result == ORL_OK && i < small->width * small->height; i++) {
+    ORL_TRY(orl_image_init(log, luma, small->width, small->height, 2, ORL_PIXEL_F32));
+    for (int i = 0; i < small->width * small->height; i++) {
         const uint8_t *rgb = &small->u8[3 * i];
         float value = (0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2]) / 255;
         luma->f32[2 * i] = open[i] ? value : 0;
         luma->f32[2 * i + 1] = open[i];
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result read_photo(const struct orl_log *log, const struct orl_scene *scene,
@@ -69,11 +68,10 @@ static enum orl_result read_photos(const struct orl_log *log, const struct orl_s
     for (size_t i = 0; i < scene->photo_count; i++)
         train += !scene->photos[i].test;
     size_t step = (train + PHOTOS_MAX - 1) / PHOTOS_MAX;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; train >= SHOTS_MIN && result == ORL_OK && i < scene->photo_count; i++)
+    for (size_t i = 0; train >= SHOTS_MIN && i < scene->photo_count; i++)
         if (!scene->photos[i].test && seen++ % step == 0)
-            result = read_photo(log, scene, i, &photos[(*count)++]);
-    return result;
+            ORL_TRY(read_photo(log, scene, i, &photos[(*count)++]));
+    return ORL_OK;
 }
 
 // --- whether it rests ---

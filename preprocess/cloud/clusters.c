@@ -181,17 +181,16 @@ static enum orl_result owned_points(const struct orl_log *log, const struct orl_
 {
     const struct orl_colmap_model *model = clusters->model;
     size_t count = 0;
-    enum orl_result result = orl_points_init(log, sparse, model->point_count);
-    for (size_t p = 0; result == ORL_OK && p < model->point_count; p++) {
+    ORL_TRY(orl_points_init(log, sparse, model->point_count));
+    for (size_t p = 0; p < model->point_count; p++) {
         if (clusters->owner[p] < 0)
             continue;
         for (int k = 0; k < 3; k++)
             sparse->position[count][k] = (float)model->points[p].position[k];
         owner[count++] = clusters->owner[p];
     }
-    if (result == ORL_OK)
-        sparse->count = count;
-    return result;
+    sparse->count = count;
+    return ORL_OK;
 }
 
 enum orl_result orl_clusters_keep_own(const struct orl_log *log,

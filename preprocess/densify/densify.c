@@ -270,18 +270,17 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, const s
     job->levels = level_count(job->reference->levels[0].width, job->reference->levels[0].height);
     if (pass->geometric || job->levels <= d->shrink)
         job->levels = d->shrink + 1;
-    enum orl_result result = ORL_OK;
-    for (int k = 0; k < plan->count && result == ORL_OK; k++) {
+    for (int k = 0; k < plan->count; k++) {
         size_t source = plan->sources[k].photo;
         job->source_views[k] = d->photos.views[source];
-        result = orl_densify_cache_get(d->cache, source, &job->sources[k]);
-        if (result == ORL_OK && pass->geometric)
-            result = read_source_depth(d, &pass[-1], source, k, job);
+        ORL_TRY(orl_densify_cache_get(d->cache, source, &job->sources[k]));
+        if (pass->geometric)
+            ORL_TRY(read_source_depth(d, &pass[-1], source, k, job));
     }
-    ORL_THEN(result, read_mask(d, job));
-    if (result == ORL_OK && !pass->geometric)
-        result = make_seeds(d, photo, job);
-    return result;
+    ORL_TRY(read_mask(d, job));
+    if (!pass->geometric)
+        ORL_TRY(make_seeds(d, photo, job));
+    return ORL_OK;
 }
 
 // Writes maps without depth for a photograph that has no sources.
@@ -434,9 +433,7 @@ static enum orl_result process_passes(struct densifier *d)
 {
     bool all = true, has;
     for (size_t i = first_photo(d); i < end_photo(d) && all; i++) {
-        enum orl_result result = has_maps(d, i, &d->passes[d->pass_count - 1], &has);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(has_maps(d, i, &d->passes[d->pass_count - 1], &has));
         all = has;
     }
     enum orl_result result = ORL_OK;

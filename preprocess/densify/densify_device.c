@@ -133,9 +133,7 @@ static enum orl_result make_state(struct orl_gpu *gpu, struct level *level, int 
     for (size_t i = 0; i < ORL_COUNT(table); i++) {
         struct orl_tex_params params = {.width = width, .height = height,
                                         .format = table[i].format, .tag = table[i].tag};
-        enum orl_result result = orl_tex_create(gpu, &params, table[i].tex);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(orl_tex_create(gpu, &params, table[i].tex));
     }
     return ORL_OK;
 }
@@ -391,13 +389,12 @@ static enum orl_result run(struct densify_device *device, const struct densify_j
 static enum orl_result sweep(struct densify_device *device, const struct densify_job *job,
                              struct level *level, enum program which, double done)
 {
-    enum orl_result result = ORL_OK;
-    for (int color = 0; color < 2 && result == ORL_OK; color++) {
+    for (int color = 0; color < 2; color++) {
         level->block.run[1]++;
         level->block.run[2] = color;
-        result = run(device, job, level, which, NULL, done);
+        ORL_TRY(run(device, job, level, which, NULL, done));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,

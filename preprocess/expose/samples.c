@@ -78,13 +78,12 @@ static enum orl_result make_pyramid(const struct orl_log *log,
         p->linear[v] = orl_srgb_decode((float)v / 255);
     p->width[0] = p->image.width;
     p->height[0] = p->image.height;
-    enum orl_result result = ORL_OK;
-    for (p->levels = 1; result == ORL_OK && p->levels < LEVELS_MAX; p->levels++) {
+    for (p->levels = 1; p->levels < LEVELS_MAX; p->levels++) {
         if (p->width[p->levels - 1] < 8 || p->height[p->levels - 1] < 8)
             break;
-        result = make_level(log, p, p->levels);
+        ORL_TRY(make_level(log, p, p->levels));
     }
-    return result;
+    return ORL_OK;
 }
 
 static void finish_pyramid(struct pyramid *p)
@@ -188,9 +187,8 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 3.0);
     if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
         return ORL_OK;
-    ORL_TRY(orl_grow(t->log, (void **)&t->items, &t->item_capacity, t->count + 1, sizeof *t->items));
-    ORL_TRY(orl_grow(t->log, (void **)&t->item_points, &t->point_capacity, t->count + 1,
-                     sizeof *t->item_points));
+    ORL_TRY(ORL_GROW(t->log, t->items, t->item_capacity, t->count));
+    ORL_TRY(ORL_GROW(t->log, t->item_points, t->point_capacity, t->count));
     item.r2 = (float)squared_radius(&view->camera, pixel);
     t->items[t->count] = item;
     t->item_points[t->count++] = (uint32_t)point;

@@ -259,14 +259,12 @@ static enum orl_result find_picture(const struct import_job *job, const char *di
     const struct orl_known_cameras *known = &job->known;
     const char *told = known->pictures ? known->pictures[image->id - 1].path : image->name;
     const char *base = orl_path_name(image->name);
-    enum orl_result result = find_below(job, dir, image->name, found);
-    if (result == ORL_OK && found->kind == IMPORT_NOTHING && strchr(told, '/') &&
-        !job->params->images_dir)
-        result = find_below(job, known->folder, told, found);
-    if (result == ORL_OK && found->kind == IMPORT_NOTHING && base != image->name &&
-        is_only_name(job, base))
-        result = orl_import_find(job->log, dir, base, "video", false, found);
-    return result;
+    ORL_TRY(find_below(job, dir, image->name, found));
+    if (found->kind == IMPORT_NOTHING && strchr(told, '/') && !job->params->images_dir)
+        ORL_TRY(find_below(job, known->folder, told, found));
+    if (found->kind == IMPORT_NOTHING && base != image->name && is_only_name(job, base))
+        ORL_TRY(orl_import_find(job->log, dir, base, "video", false, found));
+    return ORL_OK;
 }
 
 static size_t camera_index(const struct orl_colmap_model *model, uint32_t id)
@@ -441,22 +439,21 @@ static enum orl_result find_companion(const struct import_job *job, const char *
 static enum orl_result find_companions(struct import_job *job, const char *option,
                                        const char *dir, const char *role)
 {
-    enum orl_result result = ORL_OK;
     if (!orl_path_is_dir(dir))
         return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: no such folder", option, dir);
     bool masks = strcmp(option, "masks") == 0;
-    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+    for (size_t i = 0; i < job->view_count; i++) {
         struct import_view *view = &job->views[i];
         struct import_found *found = masks ? &view->mask : &view->background;
-        result = find_companion(job, dir, role, view->image->name, found);
-        if (result == ORL_OK && found->kind == IMPORT_NOTHING)
-            result = orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: nothing here for the camera "
-                              "%s", option, dir, view->image->name);
-        if (result == ORL_OK && masks && job->sequence == (found->kind == IMPORT_PICTURE))
-            result = orl_fail(job->log, ORL_ERR_DATA, "%s: a sequence needs a sequence of masks, "
-                              "and a picture one", found->path);
+        ORL_TRY(find_companion(job, dir, role, view->image->name, found));
+        if (found->kind == IMPORT_NOTHING)
+            return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: nothing here for the camera "
+                            "%s", option, dir, view->image->name);
+        if (masks && job->sequence == (found->kind == IMPORT_PICTURE))
+            return orl_fail(job->log, ORL_ERR_DATA, "%s: a sequence needs a sequence of masks, "
+                            "and a picture one", found->path);
     }
-    return result;
+    return ORL_OK;
 }
 
 // Finds the masks that the file of cameras names. A picture without one is whole.

@@ -19,21 +19,13 @@ static const struct orl_colmap_camera *camera_of(const struct import_job *job,
     return &job->known.model.cameras[view->camera];
 }
 
-static enum orl_result make_parent(const struct orl_log *log, const char *path)
-{
-    char *dir = orl_format(log, "%.*s", (int)(orl_path_name(path) - path), path);
-    enum orl_result result = dir ? orl_dir_make(log, dir) : ORL_ERR_MEMORY;
-    free(dir);
-    return result;
-}
-
 // Path "images/NAME", or "frames/NNNNN/images/NAME" for frame >= 0. Makes its folder.
 static enum orl_result output_path(const struct import_job *job, const char *folder, int frame,
                                    const char *name, const char *ending, char **path)
 {
     *path = frame < 0 ? orl_import_path(job, "%s/%s%s", folder, name, ending)
                       : orl_import_path(job, "frames/%05d/%s/%s%s", frame, folder, name, ending);
-    return *path ? make_parent(job->log, *path) : ORL_ERR_MEMORY;
+    return *path ? orl_file_make_folder(job->log, *path) : ORL_ERR_MEMORY;
 }
 
 // --- writing ---

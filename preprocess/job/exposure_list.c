@@ -88,7 +88,7 @@ static enum orl_result add_line(const struct orl_log *log, const char *path, int
                    : orl_fail(log, ORL_ERR_FORMAT,
                               "%s: line %d: neither NAME,TIME,APERTURE,ISO nor NAME,EV", path,
                               number);
-    ORL_TRY(orl_grow(log, (void **)&list->items, capacity, list->count + 1, sizeof *list->items));
+    ORL_TRY(ORL_GROW(log, list->items, *capacity, list->count));
     entry.name = orl_strdup(log, fields[0]);
     if (!entry.name)
         return ORL_ERR_MEMORY;

@@ -78,8 +78,7 @@ static char *flat_name(const struct orl_log *log, const char *given)
 static enum orl_result add_source(struct orl_job *job, char *real, const char *name,
                                   const char *given, int clip)
 {
-    enum orl_result result = orl_grow(job->log, (void **)&job->sources, &job->source_capacity,
-                                      job->source_count + 1, sizeof *job->sources);
+    enum orl_result result = ORL_GROW(job->log, job->sources, job->source_capacity, job->source_count);
     if (result != ORL_OK) {
         free(real);
         return result;

@@ -50,8 +50,7 @@ static void take_blur(void *priv, const char *line)
     float blur;
     if (sscanf(line, "frame:%zu", &frame) == 1 && frame == clip->count &&
         clip->result == ORL_OK) {
-        clip->result = orl_grow(clip->job->log, (void **)&clip->blur, &clip->capacity, frame + 1,
-                                sizeof *clip->blur);
+        clip->result = ORL_GROW(clip->job->log, clip->blur, clip->capacity, frame);
         if (clip->result == ORL_OK)
             clip->blur[clip->count++] = INFINITY;
         orl_progress_report(clip->job->progress, "frames", 0.8 * (double)frame,

@@ -180,9 +180,8 @@ enum orl_result orl_arguments_parse(const struct orl_log *log, const char *comma
                                   size_t *positional_count)
 {
     bool only_positionals = false;
-    enum orl_result result = ORL_OK;
     *positional_count = 0;
-    for (int i = 0; result == ORL_OK && i < argc; i++) {
+    for (int i = 0; i < argc; i++) {
         const char *arg = argv[i];
         if (only_positionals || strncmp(arg, "--", 2) != 0) {
             if (*positional_count == most)
@@ -205,9 +204,9 @@ enum orl_result orl_arguments_parse(const struct orl_log *log, const char *comma
         if (flag ? text != NULL : !text && ++i >= argc)
             return orl_fail(log, ORL_ERR_ARGUMENT, "%s: --%s %s", command, row->name,
                             flag ? "takes no value" : "needs a value");
-        result = set_value(log, row, text ? text : argv[i], field_of(row, set->values));
+        ORL_TRY(set_value(log, row, text ? text : argv[i], field_of(row, set->values)));
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_arguments_check(const struct orl_log *log, const char *command,
@@ -368,8 +367,7 @@ void orl_arguments_settings(json_t *settings, const struct orl_option *rows, con
 enum orl_result orl_arguments_take(const struct orl_log *log, const json_t *settings,
                                  const struct orl_option *rows, void *values, const char *stage)
 {
-    enum orl_result result = ORL_OK;
-    for (const struct orl_option *row = rows; result == ORL_OK && row->name; row++) {
+    for (const struct orl_option *row = rows; row->name; row++) {
         const char *key = find_key(row, stage);
         const json_t *value = *key ? json_object_getn(settings, key + 1, strcspn(key + 1, " "))
                                    : NULL;
@@ -377,8 +375,8 @@ enum orl_result orl_arguments_take(const struct orl_log *log, const json_t *sett
         snprintf(number, sizeof number, "%.10g",
                  json_number_value(value) / (row->kind == ORL_VALUE_MIB ? 1 << 20 : 1));
         if (value)
-            result = set_value(log, row, json_is_string(value) ? json_string_value(value) : number,
-                               field_of(row, values));
+            ORL_TRY(set_value(log, row, json_is_string(value) ? json_string_value(value) : number,
+                              field_of(row, values)));
     }
-    return result;
+    return ORL_OK;
 }

@@ -249,7 +249,7 @@ enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
 enum orl_result orl_names_add(const struct orl_log *log, struct orl_names *names,
                               const char *name)
 {
-    ORL_TRY(orl_grow(log, (void **)&names->items, &names->capacity, names->count + 1, sizeof *names->items));
+    ORL_TRY(ORL_GROW(log, names->items, names->capacity, names->count));
     char *copy = orl_strdup(log, name);
     if (!copy)
         return ORL_ERR_MEMORY;

@@ -14,6 +14,9 @@ void *orl_array(const struct orl_log *log, size_t count, size_t size);
 // and updates *capacity. New elements are not initialised.
 enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capacity,
                          size_t needed, size_t size) ORL_CHECK_RESULT;
+// The same for one more element behind `count`. All but log and count are set in place.
+#define ORL_GROW(log, items, capacity, count)                                            \
+    orl_grow(log, (void **)&(items), &(capacity), (size_t)(count) + 1, sizeof *(items))
 
 // Bytes or text that grow. `data` is owned, and ends with a zero byte that `size` does not count; NULL:
 // nothing has been added.

@@ -58,11 +58,10 @@ enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path,
     struct pnm pnm;
     if (!orl_pnm_is(data, size))
         return orl_fail(log, ORL_ERR_FORMAT, "%s: byte 0: not a binary PNM file", path);
-    enum orl_result result = parse_header(log, path, data, size, &pnm);
-    if (result == ORL_OK)
-        *header = (struct orl_picture_header){.width = (int)pnm.width, .height = (int)pnm.height,
-                                              .bits = 8};
-    return result;
+    ORL_TRY(parse_header(log, path, data, size, &pnm));
+    *header = (struct orl_picture_header){.width = (int)pnm.width, .height = (int)pnm.height,
+                                          .bits = 8};
+    return ORL_OK;
 }
 
 // In a bitmap (P4) 1 is black.

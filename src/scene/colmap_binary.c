@@ -35,15 +35,14 @@ static enum orl_result take(struct reader *r, void *out, size_t size, const char
 static enum orl_result take_count(struct reader *r, size_t record_min, const char *what,
                                   uint64_t *count)
 {
-    enum orl_result result = take(r, count, sizeof *count, what);
-    if (result == ORL_OK && *count > (r->size - r->at) / record_min) {
+    ORL_TRY(take(r, count, sizeof *count, what));
+    if (*count > (r->size - r->at) / record_min) {
         r->at -= sizeof *count;
-        result = orl_fail(r->log, ORL_ERR_FORMAT,
-                          "%s: byte %zu: the header claims %llu %s, but only %zu bytes follow",
-                          r->path, r->at, (unsigned long long)*count, what,
-                          r->size - r->at - sizeof *count);
+        return orl_fail(r->log, ORL_ERR_FORMAT,
+                        "%s: byte %zu: the header claims %llu %s, but only %zu bytes follow", r->path,
+                        r->at, (unsigned long long)*count, what, r->size - r->at - sizeof *count);
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result reader_open(const struct orl_log *log, const char *dir, const char *name,
@@ -183,12 +182,11 @@ static enum orl_result read_images(struct reader *r, struct orl_colmap_model *mo
     model->images = orl_array(r->log, count, sizeof *model->images);
     if (!model->images)
         return ORL_ERR_MEMORY;
-    enum orl_result result = ORL_OK;
-    for (uint64_t i = 0; i < count && result == ORL_OK; i++) {
+    for (uint64_t i = 0; i < count; i++) {
         model->image_count = i + 1; // counted first, so that a half-read image is released
-        result = read_image(r, model, &model->images[i]);
+        ORL_TRY(read_image(r, model, &model->images[i]));
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,

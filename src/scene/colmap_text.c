@@ -43,18 +43,14 @@ static enum orl_result read_camera(struct orl_text_lines *l, struct orl_colmap_c
 
 static enum orl_result read_cameras(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
-    enum orl_result result = ORL_OK;
     size_t capacity = 0;
-    while (result == ORL_OK && orl_text_next(l)) {
-        result = orl_grow(l->log, (void **)&model->cameras, &capacity, model->camera_count + 1,
-                          sizeof *model->cameras);
-        if (result != ORL_OK)
-            break;
+    while (orl_text_next(l)) {
+        ORL_TRY(ORL_GROW(l->log, model->cameras, capacity, model->camera_count));
         struct orl_colmap_camera *camera = &model->cameras[model->camera_count++];
         memset(camera, 0, sizeof *camera);
-        result = read_camera(l, camera);
+        ORL_TRY(read_camera(l, camera));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result read_point(struct orl_text_lines *l, struct orl_colmap_point *point)
@@ -73,20 +69,16 @@ static enum orl_result read_point(struct orl_text_lines *l, struct orl_colmap_po
 
 static enum orl_result read_points(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
-    enum orl_result result = ORL_OK;
     size_t capacity = 0;
-    while (result == ORL_OK && orl_text_next(l)) {
+    while (orl_text_next(l)) {
         if (model->point_count == UINT32_MAX)
             return orl_text_bad(l, "more than 2^32 points");
-        result = orl_grow(l->log, (void **)&model->points, &capacity, model->point_count + 1,
-                          sizeof *model->points);
-        if (result != ORL_OK)
-            break;
+        ORL_TRY(ORL_GROW(l->log, model->points, capacity, model->point_count));
         struct orl_colmap_point *point = &model->points[model->point_count++];
         memset(point, 0, sizeof *point);
-        result = read_point(l, point);
+        ORL_TRY(read_point(l, point));
     }
-    return result == ORL_OK ? orl_colmap_clean_points(l->log, l->path, model) : result;
+    return orl_colmap_clean_points(l->log, l->path, model);
 }
 
 static enum orl_result read_observations(struct orl_text_lines *l, const struct orl_colmap_model *model,
@@ -102,10 +94,7 @@ static enum orl_result read_observations(struct orl_text_lines *l, const struct 
         int64_t index = whole ? orl_colmap_point_index(model, (uint64_t)id) : -1;
         if (index < 0)
             continue;
-        enum orl_result result = orl_grow(l->log, (void **)&image->points, &capacity,
-                                          image->point_count + 1, sizeof *image->points);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(ORL_GROW(l->log, image->points, capacity, image->point_count));
         image->points[image->point_count++] = (uint32_t)index;
     }
     return *l->at ? orl_text_bad(l, "not a number") : ORL_OK;
@@ -157,18 +146,14 @@ static enum orl_result read_image(struct orl_text_lines *l, const struct orl_col
 
 static enum orl_result read_images(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
-    enum orl_result result = ORL_OK;
     size_t capacity = 0;
-    while (result == ORL_OK && orl_text_next(l)) {
-        result = orl_grow(l->log, (void **)&model->images, &capacity, model->image_count + 1,
-                          sizeof *model->images);
-        if (result != ORL_OK)
-            break;
+    while (orl_text_next(l)) {
+        ORL_TRY(ORL_GROW(l->log, model->images, capacity, model->image_count));
         struct orl_colmap_image *image = &model->images[model->image_count++];
         memset(image, 0, sizeof *image);
-        result = read_image(l, model, image);
+        ORL_TRY(read_image(l, model, image));
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,

@@ -61,8 +61,7 @@ static enum orl_result add_vertex(struct nets *n, const int at[3])
     if (!read_corners(grid, at, corner))
         return ORL_OK;
     cell_vertex(corner, mean);
-    ORL_TRY(orl_grow(n->log, (void **)&mesh->position, &n->builder.vertex_capacity,
-                     mesh->vertex_count + 1, sizeof *mesh->position));
+    ORL_TRY(ORL_GROW(n->log, mesh->position, n->builder.vertex_capacity, mesh->vertex_count));
     for (int k = 0; k < 3; k++)
         mesh->position[mesh->vertex_count][k] =
             (float)(grid->origin[k] + (at[k] + mean[k]) * grid->spacing);

@@ -181,7 +181,7 @@ enum orl_result orl_known_add_point(const struct orl_log *log, const double posi
         point.position[k] = position[k];
         point.rgb[k] = (uint8_t)(rgb[k] >= 255 ? 255 : rgb[k] > 0 ? rgb[k] : 0);
     }
-    ORL_TRY(orl_grow(log, (void **)&model->points, capacity, model->point_count + 1, sizeof *model->points));
+    ORL_TRY(ORL_GROW(log, model->points, *capacity, model->point_count));
     model->points[model->point_count++] = point;
     return ORL_OK;
 }
@@ -190,8 +190,7 @@ enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint
                                    size_t *capacities, struct orl_colmap_model *model)
 {
     struct orl_colmap_image *seen_by = &model->images[image];
-    ORL_TRY(orl_grow(log, (void **)&seen_by->points, &capacities[image],
-                     seen_by->point_count + 1, sizeof *seen_by->points));
+    ORL_TRY(ORL_GROW(log, seen_by->points, capacities[image], seen_by->point_count));
     seen_by->points[seen_by->point_count++] = point;
     model->points[point].track_length++;
     return ORL_OK;

@@ -188,18 +188,17 @@ static enum orl_result read_list(struct entry *e, const json_t *list, const char
                                                          struct orl_known_camera *),
                                  struct orl_known_cameras *known)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < json_array_size(list); i++) {
+    for (size_t i = 0; i < json_array_size(list); i++) {
         const json_t *item = json_array_get(list, i);
         struct orl_known_camera camera = {.path = orl_json_text(item, name_key)};
         set_place(e, i, camera.path);
         if (!camera.path)
             return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s has no \"%s\"", e->file, e->place,
                             name_key);
-        result = read(e, item, &camera);
-        ORL_THEN(result, orl_known_add(e->log, e->file, e->place, &camera, known));
+        ORL_TRY(read(e, item, &camera));
+        ORL_TRY(orl_known_add(e->log, e->file, e->place, &camera, known));
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_known_read_own(const struct orl_known_source *source,

@@ -161,18 +161,17 @@ enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_c
 {
     uint64_t count, camera, feature;
     double xy[2];
-    enum orl_result result = ORL_OK;
     if (!orl_text_id(l, UINT32_MAX, &count))
         return orl_text_bad(l, "a point needs the number of its views");
-    for (uint64_t i = 0; result == ORL_OK && i < count; i++) {
+    for (uint64_t i = 0; i < count; i++) {
         if (!orl_text_id(l, UINT32_MAX, &camera) || !orl_text_id(l, UINT32_MAX, &feature) ||
             !orl_text_numbers(l, xy, 2) || camera >= camera_count)
             return orl_text_bad(l, "a view needs a camera that is there, a feature, x and y");
         int64_t image = image_of ? image_of[camera] : (int64_t)camera;
         if (image >= 0 && model->point_count > points_before)
-            result = orl_known_add_view(l->log, (size_t)image, (uint32_t)points_before, capacities, model);
+            ORL_TRY(orl_known_add_view(l->log, (size_t)image, (uint32_t)points_before, capacities, model));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result read_point(struct bundler *b, size_t *capacity, struct orl_colmap_model *model)

@@ -84,8 +84,7 @@ static void copy(char *to, size_t size, const char *from)
 
 static void begin_sensor(struct reader *r, const char **attributes)
 {
-    r->result = orl_grow(r->source->log, (void **)&r->sensors, &r->sensor_capacity, r->sensor_count + 1,
-                         sizeof *r->sensors);
+    r->result = ORL_GROW(r->source->log, r->sensors, r->sensor_capacity, r->sensor_count);
     if (r->result != ORL_OK)
         return;
     struct sensor *sensor = &r->sensors[r->sensor_count++];
@@ -96,8 +95,7 @@ static void begin_sensor(struct reader *r, const char **attributes)
 
 static void begin_component(struct reader *r, const char **attributes)
 {
-    r->result = orl_grow(r->source->log, (void **)&r->components, &r->component_capacity,
-                         r->component_count + 1, sizeof *r->components);
+    r->result = ORL_GROW(r->source->log, r->components, r->component_capacity, r->component_count);
     if (r->result != ORL_OK)
         return;
     struct component *component = &r->components[r->component_count++];
@@ -108,8 +106,7 @@ static void begin_component(struct reader *r, const char **attributes)
 static void begin_camera(struct reader *r, const char **attributes)
 {
     const char *enabled = attribute(attributes, "enabled");
-    r->result = orl_grow(r->source->log, (void **)&r->cameras, &r->camera_capacity, r->camera_count + 1,
-                         sizeof *r->cameras);
+    r->result = ORL_GROW(r->source->log, r->cameras, r->camera_capacity, r->camera_count);
     if (r->result != ORL_OK)
         return;
     struct camera *camera = &r->cameras[r->camera_count++];
@@ -265,8 +262,7 @@ static enum orl_result add_cameras(const struct reader *r, struct orl_known_came
 {
     const struct orl_log *log = r->source->log;
     size_t unplaced = 0, off = 0;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < r->camera_count; i++) {
+    for (size_t i = 0; i < r->camera_count; i++) {
         const struct camera *from = &r->cameras[i];
         const struct sensor *sensor = NULL;
         struct orl_known_camera camera = {.path = from->label};
@@ -280,19 +276,19 @@ static enum orl_result add_cameras(const struct reader *r, struct orl_known_came
         const char *problem = sensor ? set_lens(sensor, &camera) : "its sensor is not there";
         if (!problem && !set_pose(r, from, &camera))
             problem = "its transform is not a pose";
-        result = problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: camera %.120s: %s", r->source->path, from->label,
-                                    problem)
-                         : orl_known_add(log, r->source->path, from->label, &camera, known);
+        ORL_TRY(problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: camera %.120s: %s", r->source->path, from->label,
+                                   problem)
+                        : orl_known_add(log, r->source->path, from->label, &camera, known));
     }
-    if (result == ORL_OK && unplaced)
+    if (unplaced)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu cameras are not aligned: left out", r->source->path,
                  unplaced, r->camera_count);
-    if (result == ORL_OK && off)
+    if (off)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu cameras are disabled: left out", r->source->path, off,
                  r->camera_count);
-    if (result == ORL_OK && r->chunks > 1)
+    if (r->chunks > 1)
         orl_logf(log, ORL_LOG_WARNING, "%s: %d chunks; taking the first", r->source->path, r->chunks);
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result parse(struct reader *r, const uint8_t *data, size_t size)

@@ -45,16 +45,15 @@ enum orl_result orl_mesh_add_polygon(const struct orl_log *log, struct orl_mesh_
     struct orl_mesh *mesh = &builder->mesh;
     if (count < 3)
         return ORL_OK;
-    enum orl_result result =
-        orl_grow(log, (void **)&mesh->triangle, &builder->triangle_capacity,
-                 mesh->triangle_count + count - 2, sizeof *mesh->triangle);
-    for (size_t i = 2; result == ORL_OK && i < count; i++) {
+    ORL_TRY(orl_grow(log, (void **)&mesh->triangle, &builder->triangle_capacity,
+                     mesh->triangle_count + count - 2, sizeof *mesh->triangle));
+    for (size_t i = 2; i < count; i++) {
         uint32_t *triangle = mesh->triangle[mesh->triangle_count++];
         triangle[0] = corners[0];
         triangle[1] = corners[i - 1];
         triangle[2] = corners[i];
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result check(const struct orl_log *log, const char *path,

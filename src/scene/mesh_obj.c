@@ -21,10 +21,8 @@ static enum orl_result read_vertex(struct obj *obj)
         return orl_text_bad(&obj->l, "a vertex needs 3 numbers");
     if (mesh->vertex_count == UINT32_MAX)
         return orl_text_bad(&obj->l, "more than 2^32 vertices");
-    ORL_TRY(orl_grow(obj->l.log, (void **)&mesh->position, &obj->builder->vertex_capacity,
-                     mesh->vertex_count + 1, sizeof *mesh->position));
-    ORL_TRY(orl_grow(obj->l.log, (void **)&mesh->color, &obj->builder->color_capacity,
-                     mesh->vertex_count + 1, sizeof *mesh->color));
+    ORL_TRY(ORL_GROW(obj->l.log, mesh->position, obj->builder->vertex_capacity, mesh->vertex_count));
+    ORL_TRY(ORL_GROW(obj->l.log, mesh->color, obj->builder->color_capacity, mesh->vertex_count));
     obj->colors = obj->colors && orl_text_numbers(&obj->l, c, 3);
     for (int k = 0; k < 3; k++) {
         double v = obj->colors ? 255 * c[k] : 0;
@@ -59,10 +57,7 @@ static enum orl_result read_face(struct obj *obj, uint32_t **corners, size_t *ca
         obj->l.at += strspn(obj->l.at, " \t");
         if (!*obj->l.at)
             break;
-        enum orl_result result = orl_grow(obj->l.log, (void **)corners, capacity, count + 1,
-                                          sizeof **corners);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(ORL_GROW(obj->l.log, *corners, *capacity, count));
         if (!read_corner(obj, &(*corners)[count++]))
             return orl_text_bad(&obj->l, "a face refers to a vertex that is not there");
     }

@@ -36,10 +36,9 @@ static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_e
     if (!mesh->position || (normals && !mesh->normal) || (colors && !mesh->color))
         return ORL_ERR_MEMORY;
     mesh->vertex_count = count;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        result = orl_ply_record(ply, element, record, -1, NULL);
-        for (int k = 0; result == ORL_OK && k < 3; k++) {
+    for (size_t i = 0; i < count; i++) {
+        ORL_TRY(orl_ply_record(ply, element, record, -1, NULL));
+        for (int k = 0; k < 3; k++) {
             mesh->position[i][k] = (float)(record[at[k]] - builder->origin[k]);
             if (normals)
                 mesh->normal[i][k] = (float)record[n_at[k]];
@@ -48,7 +47,7 @@ static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_e
                 mesh->color[i][k] = (uint8_t)(c >= 255 ? 255 : c > 0 ? c + 0.5 : 0);
         }
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result read_faces(struct orl_ply *ply, const struct orl_ply_element *element,

@@ -249,14 +249,13 @@ static enum orl_result take_list(struct orl_ply *ply, const struct orl_ply_prope
 enum orl_result orl_ply_record(struct orl_ply *ply, const struct orl_ply_element *element,
                                double *values, int list, struct orl_ply_list *items)
 {
-    enum orl_result result = ORL_OK;
-    for (int i = 0; result == ORL_OK && i < element->property_count; i++) {
+    for (int i = 0; i < element->property_count; i++) {
         const struct orl_ply_property *property = &element->properties[i];
-        result = take(ply, property->list ? property->count_type : property->type, &values[i]);
-        if (result == ORL_OK && property->list)
-            result = take_list(ply, property, values[i], i == list ? items : NULL);
+        ORL_TRY(take(ply, property->list ? property->count_type : property->type, &values[i]));
+        if (property->list)
+            ORL_TRY(take_list(ply, property, values[i], i == list ? items : NULL));
     }
-    return result;
+    return ORL_OK;
 }
 
 // --- finding an element ---

@@ -131,8 +131,7 @@ static enum orl_result flush_page(struct lod_levels *l, struct level *level)
 {
     if (!level->filled)
         return ORL_OK;
-    ORL_TRY(orl_grow(l->log, (void **)&level->pages, &level->page_capacity,
-                     level->page_count + 1, sizeof *level->pages));
+    ORL_TRY(ORL_GROW(l->log, level->pages, level->page_capacity, level->page_count));
     struct orl_lod_page entry = describe_page(&level->page);
     entry.hash = XXH3_64bits(&level->page, sizeof level->page);
     level->points += entry.count;

@@ -68,13 +68,12 @@ static enum orl_result find_radii(struct writer *w)
     if (!w->parts.flat)
         return ORL_OK;
     w->viewers = orl_array(w->log, params->view_count, sizeof *w->viewers);
-    enum orl_result result = w->viewers ? orl_disc_sizes_init(w->log, &w->sizes) : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < params->view_count; i++)
+    ORL_TRY(w->viewers ? orl_disc_sizes_init(w->log, &w->sizes) : ORL_ERR_MEMORY);
+    for (size_t i = 0; i < params->view_count; i++)
         orl_pose_centre(&params->views[i].cam_from_world, w->viewers[i]);
-    ORL_THEN(result, for_parts(w, "radii", set_radii));
-    if (result == ORL_OK)
-        w->limits = orl_radii_limits_widened(&limits, &w->sizes);
-    return result;
+    ORL_TRY(for_parts(w, "radii", set_radii));
+    w->limits = orl_radii_limits_widened(&limits, &w->sizes);
+    return ORL_OK;
 }
 
 // --- blocks ---

@@ -207,10 +207,7 @@ static enum orl_result assign_cells(struct maker *m)
     for (size_t cell = 0; cell < CELLS; cell++) {
         struct point_part *last = parts->count ? &parts->parts[parts->count - 1] : NULL;
         if (!last || last->own.count + m->counts[cell] > most) {
-            enum orl_result result = orl_grow(parts->log, (void **)&parts->parts, &capacity,
-                                              parts->count + 1, sizeof *parts->parts);
-            if (result != ORL_OK)
-                return result;
+            ORL_TRY(ORL_GROW(parts->log, parts->parts, capacity, parts->count));
             last = &parts->parts[parts->count++];
             *last = (struct point_part){0};
         }
@@ -287,17 +284,16 @@ static enum orl_result add_record(const struct point_parts *parts, struct run *r
 static enum orl_result distribute(struct maker *m)
 {
     const struct point_parts *parts = m->parts;
-    enum orl_result result = ORL_OK;
     uint32_t others[NEAR];
-    for (size_t i = 0; result == ORL_OK && i < m->read.count; i++) {
+    for (size_t i = 0; i < m->read.count; i++) {
         const float *position = m->read.position[i];
         uint32_t cell = cell_of(m, position);
         size_t count = m->border[cell] ? find_others(m, position, cell, others) : 0;
-        result = add_record(parts, &parts->parts[m->part_of[cell]].own, &m->read, i, 0);
-        for (size_t k = 0; result == ORL_OK && k < count; k++)
-            result = add_record(parts, &parts->parts[others[k]].around, &m->read, i, 0);
+        ORL_TRY(add_record(parts, &parts->parts[m->part_of[cell]].own, &m->read, i, 0));
+        for (size_t k = 0; k < count; k++)
+            ORL_TRY(add_record(parts, &parts->parts[others[k]].around, &m->read, i, 0));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result flush(const struct point_parts *parts)
@@ -438,9 +434,8 @@ enum orl_result orl_point_parts_write(const struct point_parts *parts, size_t in
                                       const struct orl_points *points, const float *scales)
 {
     struct run *run = &parts->parts[index].own;
-    enum orl_result result = ORL_OK;
     run->written = 0;
-    for (size_t i = 0; result == ORL_OK && i < run->count; i++)
-        result = add_record(parts, run, points, i, scales[i]);
-    return result == ORL_OK ? write_buffer(parts, run) : result;
+    for (size_t i = 0; i < run->count; i++)
+        ORL_TRY(add_record(parts, run, points, i, scales[i]));
+    return write_buffer(parts, run);
 }

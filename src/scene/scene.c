@@ -126,10 +126,7 @@ static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *s
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < model->image_count; i++) {
         scene->photo_count = i + 1; // counted first, so that a half-made one is released
-        enum orl_result result =
-            set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]));
     }
     return check_photo_files(log, scene);
 }

@@ -108,13 +108,9 @@ enum orl_result orl_background_add(const struct orl_log *log, struct orl_backgro
                                    const struct orl_image *picture)
 {
     ORL_REQUIRE(log, picture->type == ORL_PIXEL_U8 && picture->channels == 3);
-    enum orl_result result = ORL_OK;
     if (!b->count) {
-        result = orl_image_init(log, &b->mean, picture->width, picture->height, 3, ORL_PIXEL_F32);
-        ORL_THEN(result, orl_image_init(log, &b->deviation, picture->width, picture->height, 3,
-                                        ORL_PIXEL_F32));
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(orl_image_init(log, &b->mean, picture->width, picture->height, 3, ORL_PIXEL_F32));
+        ORL_TRY(orl_image_init(log, &b->deviation, picture->width, picture->height, 3, ORL_PIXEL_F32));
     }
     if (picture->width != b->mean.width || picture->height != b->mean.height)
         return orl_fail(log, ORL_ERR_DATA, "a background picture of %dx%d pixels among those of "

@@ -62,12 +62,11 @@ enum orl_result orl_photos_named(const struct orl_log *log, const struct orl_sce
                                  const struct orl_names *names, bool **named)
 {
     *named = orl_array(log, scene->photo_count, sizeof **named);
-    enum orl_result result = *named ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < names->count; i++) {
+    ORL_TRY(*named ? ORL_OK : ORL_ERR_MEMORY);
+    for (size_t i = 0; i < names->count; i++) {
         size_t photo;
-        result = find_photo(log, scene, names->items[i], &photo);
-        if (result == ORL_OK)
-            (*named)[photo] = true;
+        ORL_TRY(find_photo(log, scene, names->items[i], &photo));
+        (*named)[photo] = true;
     }
-    return result;
+    return ORL_OK;
 }
