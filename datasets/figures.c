@@ -182,8 +182,7 @@ static enum orl_result finish_mesh(const struct orl_log *log, const struct orl_f
 {
     mesh->normal = orl_array(log, mesh->vertex_count, sizeof *mesh->normal);
     mesh->color = orl_array(log, mesh->vertex_count, sizeof *mesh->color);
-    if (!mesh->normal || !mesh->color)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(mesh->normal && mesh->color);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         double at[3], normal[3], color[3];
         for (int k = 0; k < 3; k++)
@@ -217,8 +216,7 @@ enum orl_result orl_figure_mesh(const struct orl_log *log, const struct orl_figu
     struct orl_grid grid = grid_around(figure, spacing);
     float *value = orl_array(log, (size_t)grid.size[0] * (size_t)grid.size[1] *
                                       (size_t)grid.size[2], sizeof *value);
-    if (!value)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(value);
     float *out = value;
     for (int z = 0; z < grid.size[2]; z++)
         for (int y = 0; y < grid.size[1]; y++)

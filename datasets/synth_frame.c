@@ -48,8 +48,7 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     const struct orl_log *log = orl_gpu_log(gpu);
     ORL_TRY(orl_synth_check(log, params));
     struct orl_synth *synth = orl_array(log, 1, sizeof *synth);
-    if (!synth)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(synth);
     *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
                                 .seed = params->seed, .contrast_ev = params->contrast_ev,
                                 .gloss = params->gloss, .bars_m = params->bars_m,

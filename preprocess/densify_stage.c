@@ -48,8 +48,7 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
     const struct orl_colmap_model *model;
     ORL_TRY(orl_job_sparse(job, &model));
     bool *seen = orl_array(job->log, model->point_count, sizeof *seen);
-    if (!seen)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(seen);
     for (size_t i = 0; i < model->image_count; i++) {
         size_t best[COLMAP_SOURCES];
         if (!orl_names_contain(names, model->images[i].name))
@@ -177,8 +176,7 @@ static enum orl_result begin_stereo(const struct orl_job *job)
     uint8_t *data = NULL;
     size_t size;
     char *path = orl_job_path(job, "stereo/.oriel-key");
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     bool same = orl_file_read(NULL, path, 64, &data, &size) == ORL_OK &&
                 strcmp((const char *)data, key) == 0;
     enum orl_result result = ORL_OK;

@@ -156,8 +156,7 @@ static enum orl_result read_scene(struct planner *p, int photographs)
     p->densify.masks_dir = p->masks;
     p->pixels = orl_array(p->log, count + 1, sizeof *p->pixels);
     p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
-    if (!p->pixels || !p->reads)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(p->pixels && p->reads);
     p->max_ram = p->params.max_ram_bytes ? (double)p->params.max_ram_bytes : (double)INFINITY;
     ORL_TRY(orl_fuse_clusters(p->log, &p->model, &p->photos, p->params.fuse_cluster, p->max_ram,
                               &p->clusters));

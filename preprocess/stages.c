@@ -305,9 +305,8 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
     // Settled: done, or made again with the same result.
     bool settled[ORL_STAGE_COUNT] = {[ORL_STAGE_COLLECT] = true};
     current[ORL_STAGE_COLLECT] = true;
-    for (int i = 1; i < ORL_STAGE_COUNT; i++) {
+    for (int i = 1; i < ORL_STAGE_COUNT; i++)
         ORL_TRY(look_for(job, (enum orl_stage_id)i, &there[i]));
-    }
     // Fuse reads the depth maps, which may be deleted after it.
     if ((!there[ORL_STAGE_FUSE] || job->params->keep == ORL_KEEP_ALL) && !orl_job_has(job, "stereo/.oriel-key"))
         there[ORL_STAGE_DENSIFY] = false;

@@ -257,8 +257,7 @@ static enum orl_result match_left_out(struct calibration *c)
         return ORL_OK;
     say(c, "matching the others with all");
     bool *marked = orl_array(c->job->log, c->job->source_count, sizeof *marked);
-    if (!marked)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(marked);
     for (size_t i = 0; i < c->job->source_count; i++)
         marked[i] = !orl_colmap_image_by_name(&c->best.model, c->job->sources[i].name);
     enum orl_result result = set_mark(c, false);
@@ -387,8 +386,7 @@ static enum orl_result finish(struct calibration *c)
     if (registered(c) < 3)
         return fail_to_place(c);
     char *model = orl_job_path(job, WORK "/model");
-    if (!model)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(model);
     enum orl_result result = orl_dir_remove(job->log, model);
     ORL_THEN(result, orl_job_remove(job, NORMALISED));
     ORL_THEN(result, orl_parts_remove(job));

@@ -44,8 +44,7 @@ enum orl_result orl_database_open(const struct orl_log *log, const char *path,
         "LEFT JOIN descriptors AS d ON d.image_id = i.image_id WHERE i.name = ?";
     *out = NULL;
     struct orl_database *db = orl_array(log, 1, sizeof *db);
-    if (!db)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(db);
     db->log = log;
     db->path = orl_strdup(log, path);
     enum orl_result result = db->path ? ORL_OK : ORL_ERR_MEMORY;

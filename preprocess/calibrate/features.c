@@ -36,8 +36,7 @@ enum orl_result orl_camera_groups_find(const struct orl_job *job,
     *groups = (struct orl_camera_groups){
         .of = orl_array(job->log, job->source_count, sizeof *groups->of),
         .size = orl_array(job->log, job->source_count, sizeof *groups->size)};
-    if (!groups->of || !groups->size)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(groups->of && groups->size);
     bool one_size = true;
     for (size_t i = 1; i < job->source_count; i++)
         one_size = one_size && job->sources[i].width == job->sources[0].width &&

@@ -38,8 +38,7 @@ static enum orl_result match_by_colmap(struct orl_job *job, bool sequential, boo
 {
     struct orl_colmap_args args = {0};
     char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    if (!database)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(database);
     matcher_settings(job, database, guided, &args);
     if (sequential) {
         orl_colmap_arg(&args, "--SequentialMatching.overlap", "20");
@@ -185,8 +184,7 @@ enum orl_result orl_match_choose(struct orl_job *job, const char *database,
 {
     struct orl_pair_photo *photos = orl_array(job->log, job->source_count, sizeof *photos);
     *list = (struct orl_pair_list){0};
-    if (!photos)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(photos);
     double start = orl_time_s();
     orl_progress_report(job->progress, "pairs", 0, 1, NULL);
     enum orl_result result = read_photos(job, database, photos);
@@ -228,8 +226,7 @@ enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)
 {
     size_t n = job->source_count, count = 0;
     struct orl_pair_list list = {.items = orl_array(job->log, n * (n - 1) / 2, sizeof *list.items)};
-    if (!list.items)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(list.items);
     for (size_t a = 0; a < n; a++)
         for (size_t b = a + 1; b < n; b++)
             if (marked[a] || marked[b])

@@ -155,8 +155,7 @@ static enum orl_result make_links(struct choice *c)
     free(c->first_link);
     c->links = orl_array(c->log, c->pair_count, 2 * sizeof *c->links);
     c->first_link = orl_array(c->log, c->count + 1, sizeof *c->first_link);
-    if (!c->links || !c->first_link)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(c->links && c->first_link);
     for (size_t i = 0; i < c->pair_count; i++) {
         const struct orl_preempt_pair *pair = &c->pairs[i];
         float value = score(c, pair);
@@ -236,8 +235,7 @@ static enum orl_result choose_successive(struct choice *c)
 {
     struct orl_ranked *order = orl_array(c->log, c->count, sizeof *order);
     size_t known = 0;
-    if (!order)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(order);
     for (size_t p = 0; p < c->count; p++)
         if (!isnan(c->photos[p].taken_s))
             order[known++] = (struct orl_ranked){c->photos[p].taken_s, p};
@@ -342,8 +340,7 @@ end:
 static enum orl_result list_chosen(const struct choice *c, struct orl_pair_list *list)
 {
     list->items = orl_array(c->log, c->pair_count, sizeof *list->items);
-    if (!list->items)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(list->items);
     for (size_t i = 0; i < c->pair_count; i++)
         if (c->chosen[i])
             list->items[list->count++] = (struct orl_pair){c->pairs[i].a, c->pairs[i].b};

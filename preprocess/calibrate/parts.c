@@ -67,8 +67,7 @@ static enum orl_result read_photo(struct orl_job *job, const json_t *state,
         return orl_fail(job->log, ORL_ERR_FORMAT, "%s/" STATE ": damaged", job->dir);
     struct orl_source *source = &job->sources[i];
     source->name = orl_strdup(job->log, name);
-    if (!source->name)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(source->name);
     job->source_count++;
     source->exif.taken_s = json_number_value(json_object_get(state, "taken_s"));
     source->exif.placed = json_is_true(json_object_get(state, "placed"));

@@ -16,8 +16,7 @@ static enum orl_result sample(const struct orl_log *log, const struct orl_descri
     each = each < 1 ? 1 : each > ORL_PREEMPT_FEATURES ? ORL_PREEMPT_FEATURES : each;
     *sampled = 0;
     *samples = orl_array(log, count * each, SIZE * sizeof **samples);
-    if (!*samples)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(*samples);
     for (size_t p = 0; p < count; p++) {
         size_t take = photos[p].count < each ? photos[p].count : each;
         for (size_t i = 0; i < take; i++) {

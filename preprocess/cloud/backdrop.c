@@ -136,8 +136,7 @@ enum orl_result orl_backdrop_find(const struct orl_log *log, struct orl_scene *s
     struct photo *photos = orl_array(log, PHOTOS_MAX, sizeof *photos);
     int count = 0;
     scene->backdrop_rests = false;
-    if (!photos)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(photos);
     enum orl_result result = read_photos(log, scene, photos, &count);
     if (result == ORL_OK && count > 0) {
         double rests = correlation(photos, count, false), far = correlation(photos, count, true);

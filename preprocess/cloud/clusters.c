@@ -61,8 +61,7 @@ static enum orl_result set_members(const struct orl_log *log, const struct orl_n
 {
     const struct orl_colmap_model *model = clusters->model;
     struct stand *stands = orl_array(log, model->image_count, sizeof *stands);
-    if (!stands)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(stands);
     size_t count = 0;
     for (size_t i = 0; i < model->image_count; i++) {
         clusters->member[i] = -1;

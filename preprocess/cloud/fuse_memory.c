@@ -63,8 +63,7 @@ enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_c
 {
     size_t count = 0;
     double *falling = orl_array(log, model->image_count + 1, sizeof *falling);
-    if (!falling)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(falling);
     for (size_t i = 0; i < model->image_count; i++)
         if (orl_names_contain(names, model->images[i].name))
             falling[count++] = pixels_of(model, &model->images[i]);

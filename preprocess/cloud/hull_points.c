@@ -74,8 +74,7 @@ static enum orl_result mark_outside(const struct orl_log *log, const struct orl_
                                     struct orl_hull_points *hull)
 {
     hull->outside = orl_array(log, points->count, sizeof *hull->outside);
-    if (!hull->outside)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(hull->outside);
     double all = 0, outside = 0;
     for (size_t i = 0; i < points->count; i++) {
         const float *p = points->position[i];
@@ -120,8 +119,7 @@ static enum orl_result keep_parts(const struct orl_log *log, const struct orl_po
     size_t side = (size_t)cube->side, count = voxel_count(cube), height = 0, index;
     const size_t step[3] = {1, side, side * side};
     uint32_t *stack = orl_array(log, count, sizeof *stack);
-    if (!stack)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(stack);
     for (size_t i = 0; i < points->count; i++)
         if (!outside[i] && find_voxel(cube, points->position[i], &index))
             visit(cube, index, stack, &height);
@@ -149,8 +147,7 @@ static enum orl_result find_extent(const struct orl_log *log, const struct orl_p
 {
     float *sorted = orl_array(log, points->count, sizeof *sorted);
     *extent = 0;
-    if (!sorted)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(sorted);
     for (int k = 0; k < 3; k++) {
         size_t count = 0;
         for (size_t i = 0; i < points->count; i++)
@@ -198,8 +195,7 @@ enum orl_result orl_hull_points_begin(const struct orl_log *log,
         middle[k] -= 0.5 * size;
     result = orl_hull_init(log, &hull->cube, side, middle, size);
     hull->through = result == ORL_OK ? orl_array(log, voxel_count(&hull->cube), 1) : NULL;
-    if (!hull->through)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(hull->through);
     for (size_t i = 0; i < voxel_count(&hull->cube); i++) {
         double centre[3];
         voxel_centre(&hull->cube, i, centre);
@@ -256,8 +252,7 @@ static enum orl_result make_surface(const struct orl_log *log, const struct orl_
 {
     size_t side = (size_t)cube->side, count = voxel_count(cube);
     float *field = orl_array(log, count, sizeof *field);
-    if (!field)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(field);
     for (size_t i = 0; i < count; i++)
         field[i] = cube->inside[i];
     for (size_t a = 0; a < side; a++)

@@ -34,8 +34,7 @@ static enum orl_result crop(const struct orl_log *log, struct orl_points *points
     static const float margin = 0.25f; // of the box's side
     float *values = orl_array(log, points->count, sizeof *values);
     float low[3], high[3];
-    if (!values)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(values);
     for (int k = 0; k < 3; k++) {
         for (size_t i = 0; i < points->count; i++)
             values[i] = points->position[i][k];
@@ -79,8 +78,7 @@ static enum orl_result write_train_model(struct orl_job *job, const char *to)
     struct orl_colmap_model train = *model;
     train.image_count = 0;
     train.images = orl_array(job->log, model->image_count, sizeof *train.images);
-    if (!train.images)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(train.images);
     for (size_t i = 0; i < model->image_count; i++)
         if (!orl_job_find(job, model->images[i].name)->test)
             train.images[train.image_count++] = model->images[i];

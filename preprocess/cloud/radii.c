@@ -25,8 +25,7 @@ static enum orl_result find_viewers(struct orl_job *job, struct viewers *viewers
     ORL_TRY(orl_job_sparse(job, &model));
     viewers->views = orl_array(job->log, model->image_count, sizeof *viewers->views);
     viewers->centres = orl_array(job->log, model->image_count, sizeof *viewers->centres);
-    if (!viewers->views || !viewers->centres)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(viewers->views && viewers->centres);
     for (size_t i = 0; i < model->image_count; i++) {
         const struct orl_colmap_image *image = &model->images[i];
         if (orl_job_find(job, image->name)->test)

@@ -38,8 +38,7 @@ static enum orl_result list_photographs(struct orl_job *job, const struct orl_co
 {
     found->items = orl_array(job->log, train->count, sizeof *found->items);
     found->image = orl_array(job->log, train->count, sizeof *found->image);
-    if (!found->items || !found->image)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(found->items && found->image);
     for (size_t i = 0; i < model->image_count; i++)
         if (orl_names_contain(train, model->images[i].name)) {
             found->items[found->count].view = orl_colmap_image_view(model, &model->images[i]);

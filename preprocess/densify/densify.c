@@ -86,8 +86,7 @@ static char *map_path(const struct densifier *d, const char *dir, size_t photo,
 static enum orl_result make_folder_of(const struct densifier *d, const char *path)
 {
     char *folder = orl_strdup(d->log, path);
-    if (!folder)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(folder);
     *strrchr(folder, '/') = '\0';
     enum orl_result result = orl_dir_make(d->log, folder);
     free(folder);
@@ -146,8 +145,7 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
     if (!d->params.masks_dir)
         return ORL_OK;
     char *path = orl_format(d->log, "%s/%s.png", d->params.masks_dir, job->name);
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     enum orl_result result = ORL_OK;
     if (orl_path_is_file(path)) {
         result = orl_mask_read(d->log, path, &job->mask);
@@ -187,8 +185,7 @@ static enum orl_result make_seeds(const struct densifier *d, size_t photo, struc
     size_t width = (size_t)luma->width, height = (size_t)luma->height;
     float *seeds = job->seeds.f32;
     size_t *queue = orl_array(d->log, pixels, sizeof *queue);
-    if (!queue)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(queue);
     for (size_t k = 0; k < image->point_count; k++) {
         double pixel[2], depth;
         if (!orl_view_project(&view, d->model->points[image->points[k]].position, pixel, &depth) ||
@@ -421,8 +418,7 @@ static enum orl_result remove_intermediate(const struct densifier *d)
         for (int p = 1; p < d->pass_count - 1; p++)
             for (size_t k = 0; k < ORL_COUNT(dirs); k++) {
                 char *path = map_path(d, dirs[k], i, &d->passes[p]);
-                if (!path)
-                    return ORL_ERR_MEMORY;
+                ORL_TRY_MEMORY(path);
                 remove(path);
                 free(path);
             }
@@ -503,22 +499,20 @@ static enum orl_result open_workspace(struct densifier *d, const char *workspace
     d->depth_dir = orl_path_join(d->log, workspace, "stereo/depth_maps");
     d->normal_dir = orl_path_join(d->log, workspace, "stereo/normal_maps");
     d->confidence_dir = orl_path_join(d->log, workspace, "stereo/confidence_maps");
-    if (!d->images_dir || !d->sparse_dir || !d->depth_dir || !d->normal_dir || !d->confidence_dir)
-        return ORL_ERR_MEMORY;
-    enum orl_result result =
-        d->params.model ? ORL_OK : orl_colmap_read(d->log, d->sparse_dir, &d->own_model);
+    ORL_TRY_MEMORY(d->images_dir && d->sparse_dir && d->depth_dir && d->normal_dir && d->confidence_dir);
     d->model = d->params.model ? d->params.model : &d->own_model;
-    ORL_THEN(result, orl_densify_photos_init(d->log, d->model, names, &d->photos));
-    ORL_THEN(result, plan_memory(d));
-    ORL_THEN(result, orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans));
-    ORL_THEN(result, check_plans(d));
-    if (result == ORL_OK && d->params.part)
+    if (!d->params.model)
+        ORL_TRY(orl_colmap_read(d->log, d->sparse_dir, &d->own_model));
+    ORL_TRY(orl_densify_photos_init(d->log, d->model, names, &d->photos));
+    ORL_TRY(plan_memory(d));
+    ORL_TRY(orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans));
+    ORL_TRY(check_plans(d));
+    if (d->params.part)
         return orl_densify_check_maps(d->log, workspace, &d->params, d->shrink);
-    ORL_THEN(result, orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink));
-    ORL_THEN(result, orl_dir_make(d->log, d->depth_dir));
-    ORL_THEN(result, orl_dir_make(d->log, d->normal_dir));
-    ORL_THEN(result, orl_dir_make(d->log, d->confidence_dir));
-    return result;
+    ORL_TRY(orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink));
+    ORL_TRY(orl_dir_make(d->log, d->depth_dir));
+    ORL_TRY(orl_dir_make(d->log, d->normal_dir));
+    return orl_dir_make(d->log, d->confidence_dir);
 }
 
 // Two densifiers in one workspace would overwrite each other's maps, but for parts.

@@ -189,8 +189,7 @@ enum orl_result orl_densify_complete(const struct orl_log *log, const struct den
     c.reach = (width > height ? width : height) / REACH_SHARE;
     size_t count = (size_t)width * (size_t)height;
     float *found = orl_array(log, count, 4 * sizeof *found); // normal, depth
-    if (!found)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(found);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             size_t at = (size_t)y * (size_t)width + (size_t)x;

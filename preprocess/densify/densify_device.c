@@ -79,8 +79,7 @@ enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
 {
     struct densify_device *device = orl_array(orl_gpu_log(gpu), 1, sizeof *device);
     *out = device;
-    if (!device)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(device);
     device->gpu = gpu;
     device->params = *params;
     device->padding = orl_densify_padding(params);
@@ -159,8 +158,7 @@ static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densif
     ORL_TRY(orl_tex_create(gpu, &params, &level->reference));
     size_t count = (size_t)luma->width * (size_t)luma->height;
     uint8_t *pixels = orl_array(orl_gpu_log(gpu), count, 2);
-    if (!pixels)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(pixels);
     for (size_t i = 0; i < count; i++) {
         int x = (int)(i % (size_t)luma->width), y = (int)(i / (size_t)luma->width);
         pixels[2 * i] = luma->u8[i];
@@ -217,8 +215,7 @@ static enum orl_result upload_sources(struct densify_device *device, const struc
     ORL_TRY(orl_tex_create(device->gpu, &params, &level->sources));
     uint32_t *quads = orl_array(orl_gpu_log(device->gpu),
                                 (size_t)params.width * (size_t)params.height, sizeof *quads);
-    if (!quads)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(quads);
     for (int k = 0; k < count; k++) {
         const struct orl_image *luma =
             &job->sources[k]->levels[source_level(job, k, level->number)];
@@ -243,8 +240,7 @@ static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct de
     ORL_TRY(orl_tex_create(gpu, &params, &level->source_depths));
     float *inverse = orl_array(orl_gpu_log(gpu), (size_t)params.width * (size_t)params.height,
                                sizeof *inverse);
-    if (!inverse)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(inverse);
     for (int k = 0; k < job->plan->count; k++) {
         const struct orl_image *depth = &job->source_depths[k];
         size_t count = (size_t)depth->width * (size_t)depth->height;
@@ -266,8 +262,7 @@ static enum orl_result upload_start(struct orl_gpu *gpu, const struct densify_jo
     ORL_TRY(orl_tex_create(gpu, &params, &level->extra));
     size_t count = (size_t)depth->width * (size_t)depth->height;
     float *pixels = orl_array(orl_gpu_log(gpu), count, 4 * sizeof *pixels);
-    if (!pixels)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(pixels);
     for (size_t i = 0; i < count; i++) {
         memcpy(&pixels[4 * i], &normal->f32[3 * i], 3 * sizeof *pixels);
         pixels[4 * i + 3] = depth->f32[i];
@@ -404,8 +399,7 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
     int width = tex->params.width, height = tex->params.height;
     size_t count = (size_t)width * (size_t)height;
     float *pixels = orl_array(log, count, 4 * sizeof *pixels);
-    if (!pixels)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(pixels);
     enum orl_result result = orl_image_init(log, &maps->depth, width, height, 1, ORL_PIXEL_F32);
     ORL_THEN(result, orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32));
     ORL_THEN(result, orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32));

@@ -94,8 +94,7 @@ enum orl_result orl_densify_cache_create(const struct orl_log *log,
 {
     struct densify_cache *cache = orl_array(log, 1, sizeof *cache);
     *out = NULL;
-    if (!cache)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(cache);
     *cache = (struct densify_cache){.log = log, .photos = photos, .images_dir = images_dir};
     cache->entries = orl_array(log, photos->count, sizeof *cache->entries);
     if (!cache->entries) {

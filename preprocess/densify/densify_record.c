@@ -30,8 +30,7 @@ static enum orl_result add_file(struct digest *digest, const char *dir, const ch
     uint64_t hash = 0;
     enum orl_result result = ORL_OK;
     char *path = orl_format(digest->log, "%s/%s%s", dir, name, suffix);
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     if (orl_path_is_file(path))
         result = orl_file_hash(digest->log, path, &hash);
     add_text(digest, name);
@@ -108,8 +107,7 @@ static enum orl_result find_maps(const struct orl_log *log, const char *workspac
         for (size_t k = 0; k < ORL_COUNT(kinds) * ORL_COUNT(map_dirs); k++) {
             char *path = orl_format(log, "%s/%s/%s.%s.bin", workspace, map_dirs[k / 2],
                                     densify_photo_name(photos, i), kinds[k % 2]);
-            if (!path)
-                return ORL_ERR_MEMORY;
+            ORL_TRY_MEMORY(path);
             *any = *any || orl_path_is_file(path);
             free(path);
         }

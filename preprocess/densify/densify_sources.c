@@ -83,8 +83,7 @@ static enum orl_result point_views_init(const struct orl_log *log,
     size_t total = 0;
     memset(views, 0, sizeof *views);
     views->first = orl_array(log, model->point_count + 2, sizeof *views->first);
-    if (!views->first)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(views->first);
     for (size_t i = 0; i < photos->count; i++) {
         const struct orl_colmap_image *image = &model->images[photos->images[i]];
         for (size_t k = 0; k < image->point_count; k++)

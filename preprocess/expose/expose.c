@@ -34,8 +34,7 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
 {
     size_t known = 0;
     double *sorted = orl_array(log, count, sizeof *sorted);
-    if (!sorted)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(sorted);
     for (size_t i = 0; i < count; i++)
         if (exposures[i].known && !exposures[i].test)
             sorted[known++] = exposures[i].ev;
@@ -113,8 +112,7 @@ static enum orl_result find_photos(struct exposing *e)
     ORL_TRY(orl_job_sparse(job, &e->model));
     e->photos = orl_array(job->log, e->model->image_count, sizeof *e->photos);
     e->exposures = orl_array(job->log, e->model->image_count, sizeof *e->exposures);
-    if (!e->photos || !e->exposures)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(e->photos && e->exposures);
     for (int test = 0; test < 2; test++) {
         for (size_t i = 0; i < e->model->image_count; i++) {
             const struct orl_colmap_image *image = &e->model->images[i];
@@ -169,8 +167,7 @@ static enum orl_result estimate_exposures(struct exposing *e)
              "relative to each other", estimated);
     // The estimated exposures keep the scale of the gains.
     double *ev = orl_array(e->job->log, e->count, sizeof *ev);
-    if (!ev)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(ev);
     for (size_t i = 0; i < e->count; i++)
         ev[i] = e->exposures[i].ev;
     enum orl_result result = orl_exposures_group(
@@ -250,8 +247,7 @@ static enum orl_result fit_camera(struct exposing *e, int camera)
     struct orl_response_photo *photos = orl_array(e->job->log, e->train, sizeof *photos);
     const struct orl_source *source = NULL;
     struct orl_response_fit fit;
-    if (!photos)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(photos);
     for (size_t i = 0; i < e->train; i++) {
         photos[i] = (struct orl_response_photo){
             .use = e->photos[i].camera == camera && e->exposures[i].known,
@@ -294,7 +290,7 @@ static enum orl_result fit_responses(struct exposing *e)
         cameras = e->photos[i].camera >= cameras ? e->photos[i].camera + 1 : cameras;
     if (!e->responses)
         e->responses = orl_array(e->job->log, (size_t)cameras, sizeof *e->responses);
-    ORL_TRY(e->responses ? ORL_OK : ORL_ERR_MEMORY);
+    ORL_TRY_MEMORY(e->responses);
     for (int camera = 0; camera < cameras; camera++)
         ORL_TRY(fit_camera(e, camera));
     return ORL_OK;
@@ -405,8 +401,7 @@ static enum orl_result fit_all(struct exposing *e)
 static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, uint32_t *own)
 {
     bool *seen = orl_array(e->job->log, e->model->point_count, sizeof *seen);
-    if (!seen)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(seen);
     for (size_t i = 0; i < e->count; i++) {
         const struct orl_colmap_image *image = e->photos[i].image;
         memset(seen, 0, e->model->point_count * sizeof *seen);
@@ -428,8 +423,7 @@ static enum orl_result meter_photo(const struct exposing *e, const struct photo 
                                    double *light)
 {
     char *path = orl_job_path(e->job, "images/%s", photo->source->name);
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     enum orl_result result = orl_photo_metered(e->job->log, path, &photo->view.camera, photo->gain,
                                                photo->vignette, light);
     free(path);

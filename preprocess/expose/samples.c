@@ -49,8 +49,7 @@ static enum orl_result make_level(const struct orl_log *log, struct pyramid *p, 
 {
     int width = (p->width[level - 1] + 1) / 2, height = (p->height[level - 1] + 1) / 2;
     struct texel *out = orl_array(log, (size_t)width * (size_t)height, sizeof *out);
-    if (!out)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(out);
     p->width[level] = width;
     p->height[level] = height;
     p->level[level] = out;

@@ -142,8 +142,7 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
     struct orl_names names = {0};
     orl_import_found_finish(found);
     char *exact = orl_path_join(log, dir, name);
-    if (!exact)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(exact);
     bool there = orl_path_is_file(exact) && is_picture(name);
     free(exact);
     if (there)
@@ -223,8 +222,7 @@ static enum orl_result choose_folder(const struct import_job *job, char **dir)
     *dir = told ? orl_strdup(job->log, told) : NULL;
     for (size_t i = 0; !told && i < tries && !*dir; i++) {
         *dir = orl_path_join(job->log, job->known.folder, places[i]);
-        if (!*dir)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(*dir);
         if (!orl_path_is_dir(*dir)) {
             free(*dir);
             *dir = NULL;
@@ -305,8 +303,7 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
     const char *missed = NULL;
     job->views = orl_array(job->log, model->image_count, sizeof *job->views);
     job->why_not = orl_array(job->log, model->image_count, sizeof *job->why_not);
-    if (!job->views || !job->why_not)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(job->views && job->why_not);
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         struct import_view *view = &job->views[job->view_count];
         if (uses_splits(job) && split_of(job, &model->images[i]) == ORL_KNOWN_UNUSED) {

@@ -12,8 +12,7 @@ enum orl_result orl_import_frames_open(const struct import_job *job, const struc
     frames->temporary = found->kind == IMPORT_CLIP;
     frames->dir = frames->temporary ? orl_import_path(job, "clip.tmp")
                                     : orl_strdup(job->log, found->path);
-    if (!frames->dir)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(frames->dir);
     enum orl_result result = ORL_OK;
     if (frames->temporary) {
         result = orl_dir_make(job->log, frames->dir);

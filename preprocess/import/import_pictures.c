@@ -442,8 +442,7 @@ enum orl_result orl_import_pictures(struct import_job *job)
 {
     enum orl_result result = ORL_OK;
     job->targets = orl_array(job->log, job->known.model.camera_count, sizeof *job->targets);
-    if (!job->targets)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(job->targets);
     for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
         if (orl_progress_cancelled(job->progress))
             return ORL_ERR_CANCELLED;

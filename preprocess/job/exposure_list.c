@@ -90,8 +90,7 @@ static enum orl_result add_line(const struct orl_log *log, const char *path, int
                               number);
     ORL_TRY(ORL_GROW(log, list->items, *capacity, list->count));
     entry.name = orl_strdup(log, fields[0]);
-    if (!entry.name)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(entry.name);
     list->items[list->count++] = entry;
     return ORL_OK;
 }

@@ -264,8 +264,7 @@ enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
     for (size_t i = 0; i < names->count; i++)
         size += strlen(names->items[i]) + 1;
     char *text = orl_array(job->log, size + 1, 1);
-    if (!text)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(text);
     char *at = text;
     for (size_t i = 0; i < names->count; i++)
         at += sprintf(at, "%s\n", names->items[i]);

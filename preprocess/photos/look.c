@@ -78,8 +78,7 @@ enum orl_result orl_look_make(const struct orl_log *log, const struct orl_image 
     int factor = side < 2 * SHARP_SIDE ? 1 : side / SHARP_SIDE;
     int width = luma->width / factor, height = luma->height / factor;
     float *pixels = orl_array(log, (size_t)width * (size_t)height, sizeof *pixels);
-    if (!pixels)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(pixels);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             pixels[(size_t)y * (size_t)width + (size_t)x] = box_mean(luma, width, height, x, y);
@@ -153,8 +152,7 @@ enum orl_result orl_look_blurred_below(const struct orl_log *log, const float *s
     *limit = -INFINITY;
     size_t told = 0;
     float *sorted = orl_array(log, count, sizeof *sorted);
-    if (!sorted)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(sorted);
     for (size_t i = 0; i < count; i++)
         if (isfinite(sharpness[i]))
             sorted[told++] = sharpness[i];

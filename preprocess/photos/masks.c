@@ -87,8 +87,7 @@ static enum orl_result copy_mask(const struct orl_job *job, struct orl_source *s
 {
     struct orl_image mask = {0};
     source->mask = orl_job_path(job, ".oriel/masks/%016" PRIx64 ".png", source->mask_hash);
-    if (!source->mask)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(source->mask);
     bool made = orl_path_is_file(source->mask);
     enum orl_result result = orl_mask_read(job->log, made ? source->mask : path, &mask);
     *empty = result == ORL_OK && !orl_mask_count(&mask);

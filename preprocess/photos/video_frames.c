@@ -160,8 +160,7 @@ static enum orl_result make_frames(struct clip *clip, const char *dir)
     if ((result = measure_blur(clip)) != ORL_OK)
         return result;
     size_t *chosen = orl_array(clip->job->log, clip->count / STRETCH + 1, sizeof *chosen);
-    if (!chosen)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(chosen);
     size_t count = orl_frames_choose(clip->blur, clip->count, STRETCH, chosen);
     // The last stretch may be a rest.
     if (params->frames && count > (size_t)params->frames)

@@ -68,8 +68,7 @@ static enum orl_result begin_direct(const struct orl_log *log, const char *path,
     file->direct = true;
     file->path = orl_strdup(log, path);
     file->temp = orl_strdup(log, path);
-    if (!file->path || !file->temp)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(file->path && file->temp);
     file->fd = open(path, O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC);
     return file->fd >= 0 ? ORL_OK : fail_errno(log, path);
 }
@@ -109,8 +108,7 @@ static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_fi
 {
     for (int tries = 0; tries < TRIES_MAX; tries++) {
         file->temp = orl_temp_name(log, orl_part_prefix, file->path);
-        if (!file->temp)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(file->temp);
         file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (file->fd >= 0)
             break;

@@ -163,8 +163,7 @@ enum orl_result orl_dir_make(const struct orl_log *log, const char *path)
                    ? orl_fail(log, ORL_ERR_MEMORY, "%s: no memory to list it", path)
                    : ORL_OK;
     char *copy = orl_strdup(log, path);
-    if (!copy)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(copy);
     enum orl_result result = ORL_OK;
     for (char *end = copy + 1; result == ORL_OK; end++) {
         if (*end != '/' && *end != '\0')
@@ -251,8 +250,7 @@ enum orl_result orl_names_add(const struct orl_log *log, struct orl_names *names
 {
     ORL_TRY(ORL_GROW(log, names->items, names->capacity, names->count));
     char *copy = orl_strdup(log, name);
-    if (!copy)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(copy);
     names->items[names->count++] = copy;
     return ORL_OK;
 }

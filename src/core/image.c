@@ -21,8 +21,7 @@ enum orl_result orl_image_init(const struct orl_log *log, struct orl_image *imag
     // At most 2^32 pixels of 16 bytes each, which fits 64 bits.
     void *data = orl_array(log, (size_t)width * (size_t)height,
                            (size_t)channels * pixel_size(type));
-    if (!data)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(data);
     *image = (struct orl_image){.width = width, .height = height, .channels = channels,
                                 .type = type, .data = data};
     return ORL_OK;

@@ -9,6 +9,12 @@
 // Allocates a zeroed array of count * size bytes, released with free(). NULL, logged, when
 // the product overflows or memory runs out. count 0 gives a valid pointer.
 void *orl_array(const struct orl_log *log, size_t count, size_t size);
+// As ORL_TRY, for what was allocated: returns ORL_ERR_MEMORY when it is NULL.
+#define ORL_TRY_MEMORY(there)                                                            \
+    do {                                                                                 \
+        if (!(there))                                                                    \
+            return ORL_ERR_MEMORY;                                                       \
+    } while (0)
 
 // Grows *array (may be NULL) by doubling until it holds at least `needed` elements
 // and updates *capacity. New elements are not initialised.

@@ -90,8 +90,7 @@ static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
 {
     for (int tries = 0; !dir->outer && tries < TRIES_MAX; tries++) {
         char *outer = orl_temp_name(log, orl_part_prefix, dir->out);
-        if (!outer)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(outer);
         if (mkdir(outer, 0777) == 0) {
             dir->outer = outer;
             break;

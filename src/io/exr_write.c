@@ -242,8 +242,7 @@ static enum orl_result write_all(struct exr_writer *writer)
     writer->rows = orl_array(writer->log,
                              (size_t)params->width * (size_t)lines * (size_t)params->channel_count,
                              sizeof *writer->rows);
-    if (!writer->rows)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(writer->rows);
     for (int y = 0; y < params->height && code == EXR_ERR_SUCCESS; y += lines)
         code = write_chunk(writer, y);
     return check(writer, code);

@@ -77,8 +77,7 @@ static enum orl_result decode_exif(const struct heif_file *file, const uint8_t *
     if (start >= size)
         return ORL_OK;
     uint8_t *data = orl_array(file->log, sizeof head + size - start, 1);
-    if (!data)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(data);
     memcpy(data, head, sizeof head);
     memcpy(data + sizeof head, block + start, size - start);
     enum orl_result result = orl_exif_decode(file->log, file->path, data,
@@ -95,8 +94,7 @@ static enum orl_result read_exif(const struct heif_file *file, struct orl_exif *
         return ORL_OK;
     size_t size = heif_image_handle_get_metadata_size(file->picture, id);
     uint8_t *block = orl_array(file->log, size + 1, 1);
-    if (!block)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(block);
     enum orl_result result =
         check(file, heif_image_handle_get_metadata(file->picture, id, block));
     ORL_THEN(result, decode_exif(file, block, size, exif));
@@ -166,8 +164,7 @@ static enum orl_result make_profile(const struct heif_file *file, struct orl_pro
     if (!size)
         return ORL_OK;
     void *icc = orl_array(file->log, size, 1);
-    if (!icc)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(icc);
     enum orl_result result =
         check(file, heif_image_handle_get_raw_color_profile(file->picture, icc));
     if (result == ORL_OK)

@@ -137,8 +137,7 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
         if (!is_exif(marker) || header->exif)
             continue;
         header->exif = orl_array(job->log, marker->data_length, 1);
-        if (!header->exif)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(header->exif);
         memcpy(header->exif, marker->data, marker->data_length);
         header->exif_size = marker->data_length;
     }

@@ -119,8 +119,7 @@ enum orl_result orl_mask_find(const struct orl_log *log, const char *dir, const 
         const char *ending = endings[i / ORL_COUNT(lengths) % ORL_COUNT(endings)];
         char *file = orl_format(log, "%s/%.*s%s.%s", dir, lengths[i % ORL_COUNT(lengths)], name,
                                 ending, extension);
-        if (!file)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(file);
         if (orl_path_is_file(file))
             *path = file;
         else

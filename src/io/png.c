@@ -159,8 +159,7 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     png_bytep exif = NULL;
     if (png_get_eXIf_1(job->png, job->info, &size, &exif) && size) {
         header->exif = orl_array(job->log, (size_t)size + 6, 1);
-        if (!header->exif)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(header->exif);
         memcpy(header->exif, "Exif\0", 6);
         memcpy(header->exif + 6, exif, size);
         header->exif_size = (size_t)size + 6;
@@ -174,8 +173,7 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
         return ORL_OK;
     if (png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size) && icc_size) {
         header->icc = orl_array(job->log, icc_size, 1);
-        if (!header->icc)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(header->icc);
         memcpy(header->icc, icc, icc_size);
         header->icc_size = icc_size;
     } else {
@@ -236,8 +234,7 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
     ORL_TRY(orl_image_init(job->log, image, (int)width, (int)height, channels,
                            deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8));
     job->rows = orl_array(job->log, height, sizeof *job->rows);
-    if (!job->rows)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(job->rows);
     for (size_t y = 0; y < height; y++)
         job->rows[y] = image->u8 + (orl_image_bytes(image) - row * height) + y * row;
     png_read_image(job->png, job->rows);

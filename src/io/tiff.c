@@ -58,8 +58,7 @@ static enum orl_result fail(const struct tiff_job *job)
 static enum orl_result open_tiff(struct tiff_job *job)
 {
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!options)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(options);
     TIFFOpenOptionsSetErrorHandlerExtR(options, take_error, job);
     TIFFOpenOptionsSetWarningHandlerExtR(options, take_warning, job);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)1 << 30);
@@ -223,8 +222,7 @@ static enum orl_result read_rows(struct tiff_job *job, struct orl_image *image)
     if (size < 0 || (size_t)size < need)
         return fail(job);
     uint8_t *row = orl_array(job->log, (size_t)size, 1);
-    if (!row)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(row);
     enum orl_result result = ORL_OK;
     for (int plane = 0; plane < plane_count(job) && result == ORL_OK; plane++)
         for (uint32_t y = 0; y < job->height && result == ORL_OK; y++) {
@@ -248,8 +246,7 @@ static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
     if (!width || !height || size <= 0 || (uint64_t)size / height < pitch || size > 1 << 30)
         return fail(job);
     uint8_t *tile = orl_array(job->log, (size_t)size, 1);
-    if (!tile)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(tile);
     enum orl_result result = ORL_OK;
     for (int plane = 0; plane < plane_count(job); plane++)
         for (uint32_t y = 0; y < job->height && result == ORL_OK; y += height)

@@ -27,8 +27,7 @@ static enum orl_result take(const struct orl_log *log, const struct orl_points *
 {
     few->index = orl_array(log, few->count, sizeof *few->index);
     few->own = orl_array(log, few->count, sizeof *few->own);
-    if (!few->index || !few->own)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(few->index && few->own);
     size_t to = 0;
     for (size_t i = 0; i < points->count; i++) {
         if (left_out[i])

@@ -49,8 +49,7 @@ static enum orl_result reader_open(const struct orl_log *log, const char *dir, c
                                    struct reader *r)
 {
     *r = (struct reader){.log = log, .path = orl_path_join(log, dir, name)};
-    if (!r->path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(r->path);
     return orl_file_read(log, r->path, SIZE_MAX / 2, &r->data, &r->size);
 }
 
@@ -87,8 +86,7 @@ static enum orl_result read_cameras(struct reader *r, struct orl_colmap_model *m
     uint64_t count = 0;
     ORL_TRY(take_count(r, CAMERA_MIN, "cameras", &count));
     model->cameras = orl_array(r->log, count, sizeof *model->cameras);
-    if (!model->cameras)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(model->cameras);
     for (uint64_t i = 0; i < count; i++, model->camera_count++)
         ORL_TRY(read_camera(r, &model->cameras[i]));
     return ORL_OK;
@@ -116,8 +114,7 @@ static enum orl_result read_points(struct reader *r, struct orl_colmap_model *mo
     if (count > UINT32_MAX)
         return bad(r, "more than 2^32 points");
     model->points = orl_array(r->log, count, sizeof *model->points);
-    if (!model->points)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(model->points);
     for (uint64_t i = 0; i < count; i++, model->point_count++)
         ORL_TRY(read_point(r, &model->points[i]));
     return orl_colmap_clean_points(r->log, r->path, model);
@@ -143,8 +140,7 @@ static enum orl_result read_observations(struct reader *r, const struct orl_colm
     uint64_t count = 0;
     ORL_TRY(take_count(r, POINT2D_SIZE, "observations", &count));
     image->points = orl_array(r->log, count, sizeof *image->points);
-    if (!image->points)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(image->points);
     for (uint64_t i = 0; i < count; i++, r->at += POINT2D_SIZE) {
         uint64_t id;
         memcpy(&id, r->data + r->at + 16, sizeof id);
@@ -180,8 +176,7 @@ static enum orl_result read_images(struct reader *r, struct orl_colmap_model *mo
     uint64_t count = 0;
     ORL_TRY(take_count(r, IMAGE_MIN, "pictures", &count));
     model->images = orl_array(r->log, count, sizeof *model->images);
-    if (!model->images)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(model->images);
     for (uint64_t i = 0; i < count; i++) {
         model->image_count = i + 1; // counted first, so that a half-read image is released
         ORL_TRY(read_image(r, model, &model->images[i]));

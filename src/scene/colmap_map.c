@@ -72,8 +72,7 @@ enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path
     size_t channels = (size_t)image->channels, width = (size_t)image->width;
     struct orl_atomic_file file = {0};
     float *row = orl_array(log, width, sizeof *row);
-    if (!row)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(row);
     enum orl_result result = orl_atomic_begin(log, path, &file);
     if (result != ORL_OK)
         goto end;

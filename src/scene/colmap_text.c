@@ -132,8 +132,7 @@ static enum orl_result read_image(struct orl_text_lines *l, const struct orl_col
     if (problem)
         return orl_text_bad(l, problem);
     image->name = orl_strdup(l->log, l->at);
-    if (!image->name)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(image->name);
     // Some programs write no lines of observations.
     if (!orl_text_next_raw(l))
         return ORL_OK;

@@ -60,8 +60,7 @@ enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *c
 {
     double voxel = cones->bounds.size / side;
     float *at = *field = orl_array(log, (size_t)side * (size_t)side * (size_t)side, sizeof *at);
-    if (!at)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(at);
     for (int z = 0; z < side; z++)
         for (int y = 0; y < side; y++)
             for (int x = 0; x < side; x++) {
@@ -223,8 +222,7 @@ enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silho
     memset(cones, 0, sizeof *cones);
     ORL_TRY(find_place(log, silhouettes, count, centre, &reach));
     cones->all = orl_array(log, count, sizeof *cones->all);
-    if (!cones->all)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(cones->all);
     cones->count = count;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++)

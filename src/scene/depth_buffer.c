@@ -49,8 +49,7 @@ enum orl_result orl_depth_buffer_draw(const struct orl_log *log, const struct or
     buffer->height = (int)ceil(c->height * buffer->scale);
     size_t count = (size_t)buffer->width * (size_t)buffer->height;
     buffer->z = orl_array(log, count, sizeof *buffer->z);
-    if (!buffer->z)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(buffer->z);
     for (size_t i = 0; i < count; i++)
         buffer->z[i] = INFINITY;
     for (size_t i = 0; i < points->count; i++) {

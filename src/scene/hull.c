@@ -16,8 +16,7 @@ enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, 
     size_t count = (size_t)side * (size_t)side * (size_t)side;
     *hull = (struct orl_hull){.side = side, .voxel = size / side,
                               .inside = orl_array(log, count, 1)};
-    if (!hull->inside)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(hull->inside);
     memcpy(hull->origin, origin, sizeof hull->origin);
     memset(hull->inside, 1, count);
     return ORL_OK;
@@ -50,8 +49,7 @@ enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_
     size_t side = (size_t)cube->side, count = (size_t)n * (size_t)n * (size_t)n;
     memset(mesh, 0, sizeof *mesh);
     float *value = orl_array(log, count, sizeof *value);
-    if (!value)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(value);
     for (size_t i = 0; i < count; i++)
         value[i] = (float)cube->voxel;
     for (size_t z = 0; z < side; z++)

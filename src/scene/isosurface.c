@@ -124,8 +124,7 @@ enum orl_result orl_isosurface(const struct orl_log *log, const struct orl_grid 
     size_t count = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     ORL_REQUIRE(log, count < UINT32_MAX);
     n.vertex_of = orl_array(log, count, sizeof *n.vertex_of);
-    if (!n.vertex_of)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(n.vertex_of);
     enum orl_result result = add_all(&n);
     free(n.vertex_of);
     if (result == ORL_OK)

@@ -263,8 +263,7 @@ static enum orl_result any_alike(const struct orl_log *log, const struct orl_kno
                                  bool *alike)
 {
     const char **names = orl_array(log, known->picture_count, sizeof *names);
-    if (!names)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(names);
     for (size_t i = 0; i < known->picture_count; i++)
         names[i] = orl_path_name(known->pictures[i].path);
     qsort(names, known->picture_count, sizeof *names, orl_order_texts);
@@ -312,8 +311,7 @@ static enum orl_result choose_origin(const struct orl_log *log, struct orl_known
     enum { FAR = 100 };
     size_t count = known->model.image_count;
     double *values = orl_array(log, count, sizeof *values), spread = 0, far = 0, middle[3];
-    if (!values)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(values);
     for (int k = 0; k < 3; k++) {
         for (size_t i = 0; i < count; i++) {
             double centre[3];

@@ -201,8 +201,7 @@ static enum orl_result read_file(const struct orl_known_source *source,
     const char *path = source->path, *name = orl_path_name(path);
     int length = (int)(name - path);
     known->folder = orl_format(source->log, "%.*s", length ? length : 1, length ? path : ".");
-    if (!known->folder)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(known->folder);
     if (ends_with(name, ".json") || ends_with(name, ".sfm"))
         return read_json(source, known);
     for (size_t i = 0; i < ORL_COUNT(formats); i++)

@@ -77,8 +77,7 @@ static enum orl_result list_pictures(const struct orl_known_source *source, cons
                                      struct orl_names *names)
 {
     char *dir = orl_path_join(source->log, folder, "images");
-    if (!dir)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(dir);
     struct orl_names all = {0};
     enum orl_result result =
         orl_path_is_dir(dir) ? orl_dir_list(source->log, dir, &all)

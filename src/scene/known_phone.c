@@ -76,8 +76,7 @@ enum orl_result orl_known_read_polycam(const struct orl_known_source *source,
     size_t which = 0;
     for (; which < ORL_COUNT(polycam); which++) {
         dir = orl_path_join(source->log, source->path, polycam[which][0]);
-        if (!dir)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(dir);
         if (orl_path_is_dir(dir))
             break;
         free(dir);
@@ -110,8 +109,7 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
     struct orl_known_unused unused = {.used = used};
     const json_t *poses = json_object_get(source->root, "poses");
     char *rgb = orl_path_join(source->log, known->folder, "rgb");
-    if (!rgb)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(rgb);
     const char *folder = orl_path_is_dir(rgb) ? "rgb" : "rgbd"; // of the two kinds of export
     free(rgb);
     const json_t *lenses = json_object_get(source->root, "perFrameIntrinsicCoeffs");

@@ -17,8 +17,7 @@ static enum orl_result read_par(struct orl_text_lines *l, double shift,
     struct orl_known_camera camera = {.gap.size = true};
     size_t length = strcspn(l->at, " \t");
     char *name = orl_format(l->log, "%.*s", (int)length, l->at);
-    if (!name)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(name);
     l->at += length;
     camera.path = name;
     r = &camera.pose.r[0][0];
@@ -98,8 +97,7 @@ static enum orl_result read_list(const struct orl_log *log, const char *folder,
     bool found = false;
     for (size_t i = 0; i < ORL_COUNT(known) && !found; i++) {
         char *path = orl_path_join(log, folder, known[i]);
-        if (!path)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(path);
         found = orl_path_is_file(path);
         if (found)
             result = orl_text_open(log, path, &l);
@@ -203,8 +201,7 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
                         b->pictures.count);
     b->image_of = orl_array(l->log, b->camera_count, sizeof *b->image_of);
     b->capacity = orl_array(l->log, b->camera_count, sizeof *b->capacity);
-    if (!b->image_of || !b->capacity)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(b->image_of && b->capacity);
     for (size_t i = 0; i < b->camera_count; i++)
         ORL_TRY(read_bundler_camera(b, i, known));
     for (uint64_t i = 0; i < b->point_count; i++)

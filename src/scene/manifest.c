@@ -57,8 +57,7 @@ static enum orl_result read_optics(const struct orl_json_place *place, const jso
 // Refuses a photograph without the file that scene.json promises. Takes ownership of `path`.
 static enum orl_result need_file(const struct orl_json_place *place, char *path, const char *what)
 {
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     enum orl_result result = ORL_OK;
     if (!orl_path_is_file(path))
         result = orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: %s missing", path, what);
@@ -138,8 +137,7 @@ static enum orl_result read_responses(const struct orl_log *log, const char *pat
     if (!count)
         return ORL_OK;
     scene->responses = orl_array(log, count, sizeof *scene->responses);
-    if (!scene->responses)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(scene->responses);
     scene->response_count = count;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < count; i++) {
@@ -165,8 +163,7 @@ static enum orl_result read_photos(const struct orl_log *log, const char *path,
                         "%s: \"photographs\" lists %zu, but the sparse model has %zu", path,
                         json_array_size(list), scene->photo_count);
     bool *seen = orl_array(log, scene->photo_count, sizeof *seen);
-    if (!seen)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(seen);
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         const json_t *entry = json_array_get(list, i);
@@ -286,8 +283,7 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
         if (!asked || !told)
             continue;
         char *path = orl_path_join(log, dir, name);
-        if (!path)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(path);
         // An untrusted manifest may name any file, so only files inside the scene are read.
         bool read = orl_path_is_inside(dir, path) && orl_path_is_file(path) &&
                     orl_file_checksum(NULL, path, sum) == ORL_OK;
@@ -304,23 +300,20 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
 enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, const json_t *root,
                                   struct orl_scene *scene)
 {
-    enum orl_result result = ORL_OK;
     const json_t *version = json_object_get(root, "version");
     if (!json_is_integer(version) || json_integer_value(version) < 1)
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: not a scene's manifest (no \"version\")",
-                          path);
-    else if (json_integer_value(version) > ORL_MANIFEST_VERSION)
-        result = orl_fail(log, ORL_ERR_FORMAT,
-                          "%s: format version %lld is newer than this program knows (%d)", path,
-                          (long long)json_integer_value(version), ORL_MANIFEST_VERSION);
-    ORL_THEN(result, read_responses(log, path, root, scene));
-    ORL_THEN(result, read_photos(log, path, root, scene));
-    ORL_THEN(result, orl_tuned_read(log, path, root, scene));
-    ORL_THEN(result, read_ground(log, path, root, &scene->ground));
-    ORL_THEN(result, read_backdrop(log, path, root, &scene->backdrop_rests));
-    ORL_THEN(result, orl_manifest_read_room(log, path, root, &scene->room));
-    ORL_THEN(result, read_origin(log, path, root, scene->origin));
-    return result;
+        return orl_fail(log, ORL_ERR_FORMAT, "%s: not a scene's manifest (no \"version\")", path);
+    if (json_integer_value(version) > ORL_MANIFEST_VERSION)
+        return orl_fail(log, ORL_ERR_FORMAT,
+                        "%s: format version %lld is newer than this program knows (%d)", path,
+                        (long long)json_integer_value(version), ORL_MANIFEST_VERSION);
+    ORL_TRY(read_responses(log, path, root, scene));
+    ORL_TRY(read_photos(log, path, root, scene));
+    ORL_TRY(orl_tuned_read(log, path, root, scene));
+    ORL_TRY(read_ground(log, path, root, &scene->ground));
+    ORL_TRY(read_backdrop(log, path, root, &scene->backdrop_rests));
+    ORL_TRY(orl_manifest_read_room(log, path, root, &scene->room));
+    return read_origin(log, path, root, scene->origin);
 }
 
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, bool points,
@@ -380,8 +373,7 @@ json_t *orl_manifest_ground(const struct orl_ground *ground)
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log, const char *dir)
 {
     char *path = orl_path_join(log, dir, ".oriel/stages.json");
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     enum orl_result result = ORL_OK;
     json_t *root = NULL;
     const char *missing = "scene.json";

@@ -108,8 +108,7 @@ enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
     size_t vertex_size = 12 + (mesh->normal ? 12u : 0) + (mesh->color ? 3u : 0);
     uint8_t *data = orl_array(log, HEADER_MAX + mesh->vertex_count * vertex_size +
                                        mesh->triangle_count * FACE_SIZE, 1);
-    if (!data)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(data);
     int length = snprintf(
         (char *)data, HEADER_MAX,
         "ply\nformat binary_little_endian 1.0\nelement vertex %zu\nproperty float x\n"
@@ -182,8 +181,7 @@ enum orl_result orl_mesh_set_normals(const struct orl_log *log, struct orl_mesh 
 static enum orl_result drop_unused(const struct orl_log *log, struct orl_mesh *mesh)
 {
     uint32_t *to = orl_array(log, mesh->vertex_count, sizeof *to);
-    if (!to)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(to);
     for (size_t i = 0; i < mesh->triangle_count; i++)
         for (int k = 0; k < 3; k++)
             to[mesh->triangle[i][k]] = 1;
@@ -211,8 +209,7 @@ enum orl_result orl_mesh_decimate(const struct orl_log *log, size_t target, stru
     if (mesh->triangle_count <= target)
         return ORL_OK;
     uint32_t (*triangle)[3] = orl_array(log, mesh->triangle_count, sizeof *triangle);
-    if (!triangle)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(triangle);
     // The error is unlimited, since the number of triangles is the target.
     size_t count = meshopt_simplify(&triangle[0][0], &mesh->triangle[0][0],
                                     3 * mesh->triangle_count, &mesh->position[0][0],

@@ -39,8 +39,7 @@ static enum orl_result allocate(const struct orl_log *log, size_t count, struct 
     if (count < 1 || count > PATH_VIEWS_MAX)
         return orl_fail(log, ORL_ERR_DATA, "a camera path of %zu views", count);
     path->views = orl_array(log, count, sizeof *path->views);
-    if (!path->views)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path->views);
     path->count = count;
     return ORL_OK;
 }

@@ -30,8 +30,7 @@ enum orl_result orl_point_cube_find(const struct orl_log *log, const struct orl_
 {
     size_t count = points->count < BOUNDS_SAMPLES ? points->count : BOUNDS_SAMPLES;
     float *values = orl_array(log, count + 1, sizeof *values);
-    if (!values)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(values);
     cube->side = 1e-30;
     for (int k = 0; k < 3; k++) {
         size_t finite = 0;

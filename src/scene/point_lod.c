@@ -110,8 +110,7 @@ enum orl_result orl_lod_open(const struct orl_log *log, const char *path, struct
 {
     struct lod_header header;
     struct orl_lod *lod = *out = orl_array(log, 1, sizeof *lod);
-    if (!lod)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(lod);
     *lod = (struct orl_lod){.log = log, .path = orl_strdup(log, path), .fd = -1};
     enum orl_result result = lod->path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && (lod->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK)) < 0)

@@ -44,8 +44,7 @@ static enum orl_result add_level(struct lod_levels *l, FILE *file)
 {
     ORL_REQUIRE(l->log, l->count < ORL_LOD_LEVELS_MAX);
     struct level *level = orl_array(l->log, 1, sizeof *level);
-    if (!level)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(level);
     l->level[l->count++] = level;
     level->file = file;
     if (file)
@@ -64,8 +63,7 @@ enum orl_result orl_lod_levels_begin(const struct orl_log *log, const char *path
                                      struct lod_levels **out)
 {
     struct lod_levels *l = *out = orl_array(log, 1, sizeof *l);
-    if (!l)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(l);
     l->log = log;
     l->path = orl_strdup(log, path);
     enum orl_result result = l->path ? orl_points_init(log, &l->taken, ORL_BLOCK_POINTS)
@@ -239,8 +237,7 @@ static enum orl_result write_table(struct lod_levels *l, struct lod_header *h)
 {
     FILE *file = l->level[0]->file;
     struct orl_lod_page *table = orl_array(l->log, h->page_count, sizeof *table);
-    if (!table)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(table);
     for (uint32_t k = 0; k < h->level_count; k++)
         memcpy(table + h->levels[k].first, l->level[k]->pages,
                h->levels[k].count * sizeof *table);

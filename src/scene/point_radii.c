@@ -169,8 +169,7 @@ static enum orl_result fill_radii(struct search *s, size_t count)
     struct orl_points *points = s->points;
     size_t known = 0;
     float *sorted = orl_array(s->log, count, sizeof *sorted);
-    if (!sorted)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(sorted);
     for (size_t i = 0; i < count; i++)
         if (usable(points->radius[i]))
             sorted[known++] = points->radius[i];

@@ -224,8 +224,7 @@ enum orl_result orl_point_stream_open(const struct orl_log *log, const char *pat
                                       struct orl_point_stream **out, uint64_t *total)
 {
     struct orl_point_stream *s = *out = orl_array(log, 1, sizeof *s);
-    if (!s)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(s);
     enum orl_result result = orl_ply_open_header(log, path, &s->ply, &s->file);
     if (result == ORL_OK && (s->ply.ascii || !s->ply.element_count ||
                              strcmp(s->ply.elements[0].name, "vertex") != 0))

@@ -131,8 +131,7 @@ enum orl_result orl_points_find_radii(const struct orl_log *log, const struct or
                                       size_t view_count, struct orl_points *points)
 {
     double (*viewers)[3] = orl_array(log, view_count, sizeof *viewers);
-    if (!viewers)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(viewers);
     for (size_t i = 0; i < view_count; i++)
         orl_pose_centre(&views[i].cam_from_world, viewers[i]);
     enum orl_result result =

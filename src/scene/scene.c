@@ -122,8 +122,7 @@ static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *s
     if (model->image_count == 0)
         return orl_fail(log, ORL_ERR_DATA, "%s: no photographs", scene->dir);
     scene->photos = orl_array(log, model->image_count, sizeof *scene->photos);
-    if (!scene->photos)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(scene->photos);
     for (size_t i = 0; i < model->image_count; i++) {
         scene->photo_count = i + 1; // counted first, so that a half-made one is released
         ORL_TRY(set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]));
@@ -206,8 +205,7 @@ static enum orl_result set_distances(const struct orl_log *log, struct orl_scene
     for (size_t i = 0; i < model->image_count; i++)
         total += model->images[i].point_count;
     double *values = orl_array(log, total + scene->photo_count * SAMPLES, sizeof *values);
-    if (!values)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(values);
     for (size_t i = 0; i < model->image_count; i++) {
         if (scene->photos[i].test) // photographs and model images have equal indices
             continue;
@@ -323,8 +321,7 @@ static enum orl_result look(const struct orl_log *log, const char *dir, bool poi
     char **const paths[] = {&folder->manifest, &folder->points, &folder->fused, &folder->lod};
     for (size_t i = 0; i < ORL_COUNT(names); i++) {
         *paths[i] = orl_path_join(log, dir, names[i]);
-        if (!*paths[i])
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(*paths[i]);
         if (!orl_path_is_file(*paths[i])) {
             free(*paths[i]);
             *paths[i] = NULL;
@@ -377,8 +374,7 @@ static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene, 
 static enum orl_result create(const struct orl_log *log, const char *dir, struct orl_scene **out)
 {
     *out = orl_array(log, 1, sizeof **out);
-    if (!*out)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(*out);
     (*out)->dir = orl_strdup(log, dir);
     (*out)->frame = -1;
     (*out)->frame_count = count_frames(dir);

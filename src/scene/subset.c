@@ -13,8 +13,7 @@
 static enum orl_result copy_if_there(const struct orl_log *log, const struct orl_scene *scene,
                                      char *path, const char *dir)
 {
-    if (!path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path);
     enum orl_result result = ORL_OK;
     if (orl_path_is_file(path)) {
         const char *inside = path + strlen(scene->dir);
@@ -52,8 +51,7 @@ static enum orl_result write_kept(const struct orl_log *log, const struct orl_co
     struct orl_colmap_model kept = *all;
     kept.image_count = 0;
     kept.images = orl_array(log, all->image_count, sizeof *kept.images);
-    if (!kept.images)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(kept.images);
     for (size_t i = 0; i < all->image_count; i++)
         if (keep[i])
             kept.images[kept.image_count++] = all->images[i];

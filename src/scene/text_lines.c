@@ -18,8 +18,7 @@ enum orl_result orl_text_open(const struct orl_log *log, const char *path,
                               struct orl_text_lines *l)
 {
     *l = (struct orl_text_lines){.log = log, .path = orl_strdup(log, path)};
-    if (!l->path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(l->path);
     size_t size;
     enum orl_result result = orl_file_read(log, l->path, SIZE_MAX / 2, &l->data, &size);
     l->next = l->at = (char *)l->data;

@@ -85,8 +85,7 @@ static enum orl_result open_manifest(const struct orl_log *log, const char *dir,
 {
     *root = NULL;
     *path = orl_path_join(log, dir, "scene.json");
-    if (!*path)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(*path);
     if (!orl_path_is_file(*path))
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: not there; settings can be kept in prepared scenes only", *path);

@@ -8,8 +8,7 @@ static enum orl_result single_view(const struct orl_log *log, const struct orl_v
                                    struct orl_path *path)
 {
     path->views = orl_array(log, 1, sizeof *path->views);
-    if (!path->views)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(path->views);
     path->views[0] = *view;
     path->count = 1;
     return ORL_OK;
@@ -62,7 +61,7 @@ enum orl_result orl_photos_named(const struct orl_log *log, const struct orl_sce
                                  const struct orl_names *names, bool **named)
 {
     *named = orl_array(log, scene->photo_count, sizeof **named);
-    ORL_TRY(*named ? ORL_OK : ORL_ERR_MEMORY);
+    ORL_TRY_MEMORY(*named);
     for (size_t i = 0; i < names->count; i++) {
         size_t photo;
         ORL_TRY(find_photo(log, scene, names->items[i], &photo));
