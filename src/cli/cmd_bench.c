@@ -179,15 +179,12 @@ static enum orl_result run_bench(struct call *call)
     struct plan plan = {0};
     struct orl_bench bench = {0};
     enum orl_result result = plan_sizes(log, o, &plan);
-    if (result == ORL_OK)
-        result = plan_points(log, o, &plan);
-    if (result == ORL_OK)
-        result = command_scene(call, NULL);
+    ORL_THEN(result, plan_points(log, o, &plan));
+    ORL_THEN(result, command_scene(call, NULL));
     if (result == ORL_OK)
         result = orl_choices_make(log, call->scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
                                   &plan.choices);
-    if (result == ORL_OK)
-        result = command_device(call);
+    ORL_THEN(result, command_device(call));
     const struct orl_bench_params params = {
         .choices = plan.choices.items, .choice_count = plan.choices.count,
         .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
@@ -197,10 +194,8 @@ static enum orl_result run_bench(struct call *call)
         .textures = o->textures,
         .image_dir = o->images, .trace = o->trace,
         .progress = call->progress};
-    if (result == ORL_OK)
-        result = orl_bench_run(call->gpu, call->scene, &params, &bench);
-    if (result == ORL_OK)
-        result = report(log, o, &bench);
+    ORL_THEN(result, orl_bench_run(call->gpu, call->scene, &params, &bench));
+    ORL_THEN(result, report(log, o, &bench));
     orl_bench_finish(&bench);
     orl_choices_finish(&plan.choices);
     return result;

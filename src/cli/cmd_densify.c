@@ -62,12 +62,9 @@ static enum orl_result densify(struct call *call, const struct orl_densify_param
     enum orl_result result = sparse ? orl_colmap_read(call->log, sparse, &model) : ORL_ERR_MEMORY;
     struct orl_densify_params params = *asked;
     params.model = &model;
-    if (result == ORL_OK)
-        result = choose_photos(call->log, workspace, &model, call->options, &photos);
-    if (result == ORL_OK)
-        result = command_device(call);
-    if (result == ORL_OK)
-        result = orl_densify(call->gpu, workspace, &photos, &params, call->progress);
+    ORL_THEN(result, choose_photos(call->log, workspace, &model, call->options, &photos));
+    ORL_THEN(result, command_device(call));
+    ORL_THEN(result, orl_densify(call->gpu, workspace, &photos, &params, call->progress));
     orl_names_finish(&photos);
     orl_colmap_finish(&model);
     free(sparse);

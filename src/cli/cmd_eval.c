@@ -162,8 +162,7 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
     } else {
         result = start_renderer(job);
     }
-    if (result == ORL_OK)
-        result = orl_eval_run(call->gpu, call->renderer, call->scene, &params, eval);
+    ORL_THEN(result, orl_eval_run(call->gpu, call->renderer, call->scene, &params, eval));
     orl_hdr_destroy(&job->hdr);
     orl_renderer_destroy(&call->renderer);
     if (result != ORL_OK)
@@ -192,8 +191,7 @@ static enum orl_result measure_walk(struct job *job, bool array)
         .progress = call->progress};
     struct orl_stability *all = orl_array(call->log, job->choices.count, sizeof *all);
     enum orl_result result = all ? start_renderer(job) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_stability_walk_all(call->gpu, call->renderer, call->scene, &params, all);
+    ORL_THEN(result, orl_stability_walk_all(call->gpu, call->renderer, call->scene, &params, all));
     if (result == ORL_OK && o->json)
         result = report_write(call->log, o->json, orl_stability_to_json(
             call->log, call->scene, all, job->choices.count, array));
@@ -256,18 +254,15 @@ static enum orl_result evaluate_scene(struct job *job)
     enum orl_result result = check_together(call->log, o);
     if (result == ORL_OK && o->methods.count) // reports wrong settings before the long work
         result = choose(job, NULL);
-    if (result == ORL_OK)
-        result = command_scene(call, NULL);
+    ORL_THEN(result, command_scene(call, NULL));
     if (result == ORL_OK && o->time_step >= 0)
         result = orl_scene_set_frame(call->log, call->scene, o->time_step);
-    if (result == ORL_OK)
-        result = choose(job, call->scene);
+    ORL_THEN(result, choose(job, call->scene));
     if (result == ORL_OK && !o->walk && !o->path)
         result = orl_eval_check(call->log, call->scene);
     if (result == ORL_OK && o->truth)
         result = orl_truth_open(call->log, call->scene, o->truth, &job->truth);
-    if (result == ORL_OK)
-        result = command_device(call);
+    ORL_THEN(result, command_device(call));
     if (result != ORL_OK)
         return result;
     bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||

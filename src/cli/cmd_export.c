@@ -75,8 +75,7 @@ static enum orl_result run_export(struct call *call)
         return orl_fail(log, ORL_ERR_ARGUMENT, "export: --as KIND is needed");
     const struct orl_export_kind *kind = &orl_export_kinds[o->kind];
     enum orl_result result = check(log, o, kind);
-    if (result == ORL_OK)
-        result = command_scene(call, NULL);
+    ORL_THEN(result, command_scene(call, NULL));
     if (result == ORL_OK && call->scene->lod && kind->points)
         result = take_points(log, call->scene);
     if (result == ORL_OK && !kind->placed)

@@ -71,8 +71,7 @@ static enum orl_result draw_panorama(struct job *job)
         result = parse_vector(call->log, "position", &o->position, p.position);
     if (result == ORL_OK && o->up.count)
         result = parse_vector(call->log, "up", &o->up, p.up);
-    if (result == ORL_OK)
-        result = orl_hdr_draw_panorama(job->hdr, &p, call->skip, &frame);
+    ORL_THEN(result, orl_hdr_draw_panorama(job->hdr, &p, call->skip, &frame));
     if (result != ORL_OK)
         return result;
     job->output.attributes.latlong = orl_panorama_view(&p, &view);
@@ -137,21 +136,15 @@ static enum orl_result open_all(struct job *job)
     enum orl_result result = check(o, call->log);
     if (result == ORL_OK && o->method) // reports wrong settings before the long work
         result = orl_choice_make(call->log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
-    if (result == ORL_OK)
-        result = output_choose(call->log, OUTPUT_OPTIONS_COPY, true, &job->output);
+    ORL_THEN(result, output_choose(call->log, OUTPUT_OPTIONS_COPY, true, &job->output));
     if (result == ORL_OK)
         default_layers(o, &job->output.layers);
-    if (result == ORL_OK)
-        result = command_scene(call, o->light);
-    if (result == ORL_OK)
-        result = orl_choice_make(call->log, call->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings,
-                                 &choice);
+    ORL_THEN(result, command_scene(call, o->light));
+    ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice));
     if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
         result = orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path);
-    if (result == ORL_OK)
-        result = orl_photos_named(call->log, call->scene, &o->exclude, &call->skip);
-    if (result == ORL_OK)
-        result = command_device(call);
+    ORL_THEN(result, orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
+    ORL_THEN(result, command_device(call));
     if (result != ORL_OK)
         return result;
     job->method = choice.method->name;
@@ -181,8 +174,7 @@ static enum orl_result run_hdr(struct call *call)
 {
     struct job job = {.call = call, .output = {ORL_FRAME_OUTPUT_DEFAULTS}};
     enum orl_result result = open_all(&job);
-    if (result == ORL_OK)
-        result = draw_all(&job);
+    ORL_THEN(result, draw_all(&job));
     orl_hdr_destroy(&job.hdr);
     return result;
 }

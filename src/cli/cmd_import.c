@@ -151,14 +151,10 @@ static enum orl_result run_import(struct call *call)
         command_held_out(log, o->test_every, &o->test_list, o->test_block);
     if (result == ORL_OK && o->frames)
         result = parse_frames(log, o->frames, &params.frames);
-    if (result == ORL_OK)
-        result = parse_silhouettes(log, o->silhouettes, &params);
-    if (result == ORL_OK)
-        result = parse_mesh(log, o->mesh, &params);
-    if (result == ORL_OK)
-        result = parse_room(log, o->room, &params.room);
-    if (result == ORL_OK)
-        result = orl_import(log, &params, call->progress);
+    ORL_THEN(result, parse_silhouettes(log, o->silhouettes, &params));
+    ORL_THEN(result, parse_mesh(log, o->mesh, &params));
+    ORL_THEN(result, parse_room(log, o->room, &params.room));
+    ORL_THEN(result, orl_import(log, &params, call->progress));
     return result == ORL_OK ? summary_print(log, params.out) : result;
 }
 

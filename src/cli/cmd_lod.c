@@ -35,11 +35,9 @@ static enum orl_result run_lod(struct call *call)
     char *to = orl_path_join(log, dir, ORL_LOD_NAME);
     struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = o->max_ram_bytes};
     enum orl_result result = from && to ? orl_scene_open_photos(log, dir, &call->scene) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_scene_training_views(log, call->scene, &views, &params.view_count);
+    ORL_THEN(result, orl_scene_training_views(log, call->scene, &views, &params.view_count));
     params.views = views;
-    if (result == ORL_OK)
-        result = orl_lod_write(log, call->progress, &params, from, to);
+    ORL_THEN(result, orl_lod_write(log, call->progress, &params, from, to));
     if (result == ORL_OK && !call->common->quiet)
         result = report(log, to);
     free(from);

@@ -17,8 +17,7 @@ static enum orl_result run_prepare(struct call *call)
         return orl_fail(log, ORL_ERR_ARGUMENT, "prepare: --fps and --frames exclude each other");
     enum orl_result result =
         command_held_out(log, params.test_every, &params.test_list, params.test_block);
-    if (result == ORL_OK)
-        result = orl_prepare(log, &params, call->progress);
+    ORL_THEN(result, orl_prepare(log, &params, call->progress));
     terminal_finish(call->terminal);
     if (result == ORL_OK && params.until == ORL_UNTIL_END)
         result = summary_print(log, params.out);

@@ -30,10 +30,8 @@ static enum orl_result run_publish(struct call *call)
     enum orl_result result = command_scene(call, o->light);
     if (result == ORL_OK)
         params.radiance = radiance_chosen(call->log, call->scene, o->wish);
-    if (result == ORL_OK)
-        result = command_device(call);
-    if (result == ORL_OK)
-        result = orl_publish(call->gpu, call->scene, &params, &report);
+    ORL_THEN(result, command_device(call));
+    ORL_THEN(result, orl_publish(call->gpu, call->scene, &params, &report));
     if (result == ORL_OK && !call->common->quiet)
         print_report(o, &report);
     return result;

@@ -104,10 +104,8 @@ static enum orl_result run_render(struct call *call)
         .textures = o->textures,
         .progress = call->progress};
     enum orl_result result = check(call->log, o);
-    if (result == ORL_OK)
-        result = output_choose(call->log, OUTPUT_OPTIONS_COPY, false, &job.output);
-    if (result == ORL_OK)
-        result = command_scene(call, o->light);
+    ORL_THEN(result, output_choose(call->log, OUTPUT_OPTIONS_COPY, false, &job.output));
+    ORL_THEN(result, command_scene(call, o->light));
     if (result == ORL_OK && o->time_step >= 0)
         result = orl_scene_set_frame(call->log, call->scene, o->time_step);
     if (result == ORL_OK)
@@ -116,12 +114,9 @@ static enum orl_result run_render(struct call *call)
         result = orl_choice_make(call->log, call->scene,
                                  limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
                                  o->method, &o->settings, &job.choice);
-    if (result == ORL_OK)
-        result = orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path);
-    if (result == ORL_OK)
-        result = orl_photos_named(call->log, call->scene, &o->exclude, &call->skip);
-    if (result == ORL_OK)
-        result = command_renderer(call, &limits);
+    ORL_THEN(result, orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path));
+    ORL_THEN(result, orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
+    ORL_THEN(result, command_renderer(call, &limits));
     if (result != ORL_OK)
         return result;
     job.time_runs = o->path && o->time_step < 0 && call->scene->frame_count > 0;

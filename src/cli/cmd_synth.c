@@ -74,10 +74,8 @@ static enum orl_result make_monument(struct call *call, const struct orl_synth_p
     char *photos = orl_path_append(call->log, o->out, "");
     char *truth = orl_path_append(call->log, o->truth ? o->truth : o->out, o->truth ? "" : "-truth");
     enum orl_result result = photos && truth ? orl_synth_check(call->log, params) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = command_device(call);
-    if (result == ORL_OK)
-        result = orl_synth_run(call->gpu, call->progress, params, photos, truth);
+    ORL_THEN(result, command_device(call));
+    ORL_THEN(result, orl_synth_run(call->gpu, call->progress, params, photos, truth));
     terminal_finish(call->terminal);
     if (result == ORL_OK)
         printf("%d photographs in %s, truth in %s\n", params->count, photos, truth);
@@ -140,8 +138,7 @@ static enum orl_result run_synth(struct call *call)
         monument.height = figures.height = o->size.height;
     }
     enum orl_result result = parse_exposures(log, &o->exposures, &monument);
-    if (result == ORL_OK)
-        result = check_options(log, o, call->inputs[0], is_figures);
+    ORL_THEN(result, check_options(log, o, call->inputs[0], is_figures));
     if (result == ORL_OK && o->path)
         result = orl_synth_check(log, &monument);
     if (result == ORL_OK && o->path)

@@ -70,10 +70,8 @@ static enum orl_result run_trim(struct call *call)
     struct orl_choice start;
     struct orl_trim trim = {0};
     enum orl_result result = command_scene(call, NULL);
-    if (result == ORL_OK)
-        result = orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
-    if (result == ORL_OK)
-        result = command_device(call);
+    ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start));
+    ORL_THEN(result, command_device(call));
     const struct orl_trim_params params = {
         .start = &start, .out = o->out, .tolerance_db = o->tolerance_db,
         .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,
@@ -83,8 +81,7 @@ static enum orl_result run_trim(struct call *call)
         .on_step = call->common->quiet ? NULL : print_step, .progress = call->progress};
     if (result == ORL_OK && !call->common->quiet)
         printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
-    if (result == ORL_OK)
-        result = orl_trim_run(call->gpu, call->scene, &params, &trim);
+    ORL_THEN(result, orl_trim_run(call->gpu, call->scene, &params, &trim));
     if (result == ORL_OK)
         print_summary(o, &trim);
     if (result == ORL_OK && o->json)

@@ -61,25 +61,21 @@ static enum orl_result run_tune(struct call *call)
     enum orl_result result = ORL_OK;
     if (o->method) // reports wrong settings before the long work
         result = orl_choice_make(log, NULL, ORL_SAMPLE_SRGB, o->method, &o->settings, &start);
-    if (result == ORL_OK)
-        result = command_scene(call, NULL);
+    ORL_THEN(result, command_scene(call, NULL));
     if (result == ORL_OK) // unless `fresh`, starts from the scene's tuned values
         result = orl_choice_make(log, o->fresh ? NULL : call->scene, ORL_SAMPLE_SRGB,
                                  o->method ? o->method : orl_method_default(call->scene),
                                  &o->settings, &start);
     struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
-    if (result == ORL_OK)
-        result = command_renderer(call, &limits);
+    ORL_THEN(result, command_renderer(call, &limits));
     const struct orl_search_params params = {
         .size_divide = o->size_divide, .views = (size_t)o->views, .gain_db = o->gain_db,
         .budget_s = o->budget_s,
         .on_trial = call->common->quiet ? NULL : print_trial, .progress = call->progress};
     if (result == ORL_OK && !call->common->quiet)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
-    if (result == ORL_OK)
-        result = orl_search_run(call->gpu, call->renderer, call->scene, &params, &start, &o->keys, &search);
-    if (result == ORL_OK)
-        result = report(log, o, orl_gpu_caps(call->gpu)->renderer, &search);
+    ORL_THEN(result, orl_search_run(call->gpu, call->renderer, call->scene, &params, &start, &o->keys, &search));
+    ORL_THEN(result, report(log, o, orl_gpu_caps(call->gpu)->renderer, &search));
     orl_search_finish(&search);
     return result;
 }

@@ -41,8 +41,7 @@ static enum orl_result run_walk(struct call *call)
                                  o->method, &o->settings, &choice);
     const struct orl_renderer_params limits = {.radiance = radiance,
                                                .max_vram_bytes = o->max_vram_bytes};
-    if (result == ORL_OK)
-        result = command_renderer(call, &limits);
+    ORL_THEN(result, command_renderer(call, &limits));
     const struct orl_walk_params params = {
         .host = o->host ? o->host : "127.0.0.1", .port = o->port, .title = o->title, .edits = o->edits,
         .radiance = radiance,

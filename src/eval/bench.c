@@ -58,8 +58,7 @@ static enum orl_result measure_methods(struct bench_job *job, struct orl_rendere
         run.psnr_db = m == 0 ? like->psnr_db : 0;
         step(job, what);
         result = orl_bench_measure(job, renderer, &job->params->choices[m].params, &run);
-        if (result == ORL_OK)
-            result = add_run(job, &run);
+        ORL_THEN(result, add_run(job, &run));
     }
     return result;
 }
@@ -70,8 +69,7 @@ static enum orl_result measure_with(struct bench_job *job, const struct orl_rend
 {
     struct orl_renderer *renderer = NULL;
     enum orl_result result = orl_renderer_create(job->gpu, job->scene, params, &renderer);
-    if (result == ORL_OK)
-        result = measure_methods(job, renderer, like, what);
+    ORL_THEN(result, measure_methods(job, renderer, like, what));
     orl_renderer_destroy(&renderer);
     return result;
 }
@@ -209,8 +207,7 @@ static enum orl_result compare_resolution(struct bench_job *job, struct orl_rend
     char *path = NULL;
     enum orl_result result =
         orl_renderer_draw(renderer, &view, &job->params->choices[0].params, NULL, &frame);
-    if (result == ORL_OK)
-        result = orl_tone_srgb(job->log, &frame.color, &picture);
+    ORL_THEN(result, orl_tone_srgb(job->log, &frame.color, &picture));
     if (result == ORL_OK && best->u8)
         result = orl_metrics_compare(job->log, &picture, best, &frame.coverage, &metrics);
     *psnr_db = metrics.psnr_db;
@@ -241,10 +238,8 @@ static enum orl_result measure_resolutions(struct bench_job *job)
         snprintf(what, sizeof what, "photographs at 1/%d", divide);
         like.photo_divide = divide;
         result = orl_renderer_create(job->gpu, job->scene, &params, &renderer);
-        if (result == ORL_OK)
-            result = compare_resolution(job, renderer, divide, &best, &like.psnr_db);
-        if (result == ORL_OK)
-            result = measure_methods(job, renderer, &like, what);
+        ORL_THEN(result, compare_resolution(job, renderer, divide, &best, &like.psnr_db));
+        ORL_THEN(result, measure_methods(job, renderer, &like, what));
         orl_renderer_destroy(&renderer);
     }
     orl_image_finish(&best);
@@ -302,8 +297,7 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, struct orl_scene *scene,
     enum orl_result result = ORL_OK;
     if (params->image_dir)
         result = orl_dir_make(job.log, params->image_dir);
-    if (result == ORL_OK)
-        result = measure_sizes(&job);
+    ORL_THEN(result, measure_sizes(&job));
     if (result == ORL_OK && params->growth)
         result = measure_photographs(&job);
     if (result == ORL_OK && params->growth && scene->points.count)

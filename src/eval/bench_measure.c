@@ -104,8 +104,7 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl
             result = ORL_ERR_CANCELLED;
     }
     orl_gpu_time_passes(job->gpu, false);
-    if (result == ORL_OK)
-        result = orl_gpu_finish(job->gpu);
+    ORL_THEN(result, orl_gpu_finish(job->gpu));
     raster->raster_ms = orl_median(ms, raster->frames);
     orl_point_raster_destroy(&drawer);
     free(ms);

@@ -89,8 +89,7 @@ static enum orl_result add_varied(const struct orl_log *log, const struct orl_ch
         if (size >= (int)sizeof one.setting)
             return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: a value is too long", varied);
         result = orl_render_params_set(log, &one.params, one.setting);
-        if (result == ORL_OK)
-            result = add(log, &one, choices);
+        ORL_THEN(result, add(log, &one, choices));
         if (value[length] == '\0')
             break;
         value += length + 1;

@@ -84,8 +84,7 @@ static enum orl_result draw_and_time(struct job *job, const struct orl_view *vie
         .frames_max = FRAMES_MAX, .pass_frames = PASS_FRAMES, .progress = job->params->progress};
     struct orl_timing timing;
     enum orl_result result = draw(&frames, frame);
-    if (result == ORL_OK)
-        result = orl_timing_take(job->gpu, &params, &timing);
+    ORL_THEN(result, orl_timing_take(job->gpu, &params, &timing));
     if (result == ORL_OK && job->params->sequence) // the photographs are those of the scene itself
         result = orl_scene_set_frame(job->log, job->params->sequence, -1);
     if (result != ORL_OK)
@@ -103,9 +102,7 @@ static enum orl_result compare_radiance(const struct job *job, struct orl_eval_v
 {
     struct orl_image truth;
     enum orl_result result = orl_truth_read(job->log, job->params->truth, view->photo, &truth);
-    if (result == ORL_OK)
-        result = orl_radiance_compare(job->log, &frame->color, &truth, &frame->coverage,
-                                      &view->radiance);
+    ORL_THEN(result, orl_radiance_compare(job->log, &frame->color, &truth, &frame->coverage, &view->radiance));
     orl_image_finish(&truth);
     return result;
 }
@@ -120,9 +117,7 @@ static enum orl_result render(struct job *job, const struct orl_heldout *heldout
     enum orl_result result = draw_and_time(job, &heldout->view, &frame, view);
     if (result == ORL_OK && job->params->truth)
         result = compare_radiance(job, view, &frame);
-    if (result == ORL_OK)
-        result = orl_heldout_expose(job->log, job->scene, view->photo, render, &frame.color,
-                                    rendered);
+    ORL_THEN(result, orl_heldout_expose(job->log, job->scene, view->photo, render, &frame.color, rendered));
     *coverage = frame.coverage;
     frame.coverage = (struct orl_image){0};
     orl_frame_finish(&frame);
@@ -136,9 +131,7 @@ static enum orl_result compare_vehicle(const struct job *job, struct orl_eval_vi
 {
     struct orl_image vehicle;
     enum orl_result result = orl_truth_vehicle(job->log, job->params->truth, view->photo, &vehicle);
-    if (result == ORL_OK)
-        result = orl_metrics_of_part(job->log, rendered, photograph, coverage, &vehicle,
-                                     &view->vehicle);
+    ORL_THEN(result, orl_metrics_of_part(job->log, rendered, photograph, coverage, &vehicle, &view->vehicle));
     orl_image_finish(&vehicle);
     return result;
 }
@@ -156,11 +149,8 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
         result = params->pictures ? orl_eval_read_picture(job->log, job->scene, params->pictures,
                                                           &heldout, &rendered, &coverage)
                                   : render(job, &heldout, view, &rendered, &coverage);
-    if (result == ORL_OK)
-        result = orl_metrics_compare(job->log, &rendered, &heldout.picture, &coverage,
-                                     &view->metrics);
-    if (result == ORL_OK)
-        result = orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip);
+    ORL_THEN(result, orl_metrics_compare(job->log, &rendered, &heldout.picture, &coverage, &view->metrics));
+    ORL_THEN(result, orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip));
     if (result == ORL_OK && job->eval->has_vehicle)
         result = compare_vehicle(job, view, &rendered, &heldout.picture, &coverage);
     if (result == ORL_OK && params->image_dir)
@@ -245,10 +235,8 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
     eval->has_vehicle = params->truth && params->truth->vehicle;
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);
-    if (result == ORL_OK)
-        result = list_views(&job, eval);
-    if (result == ORL_OK)
-        result = measure_all(&job);
+    ORL_THEN(result, list_views(&job, eval));
+    ORL_THEN(result, measure_all(&job));
     if (result != ORL_OK) {
         orl_eval_finish(eval);
         return result;

@@ -70,12 +70,9 @@ enum orl_result orl_eval_write_images(const struct orl_log *log, const struct or
     struct orl_image panels = {0};
     char *stem = orl_eval_file_stem(log, scene, photo);
     enum orl_result result = stem ? beside(log, rendered, photograph, &panels) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = write_as(log, params->image_dir, stem, "photo", "", photograph);
-    if (result == ORL_OK)
-        result = write_as(log, params->image_dir, stem, params->method, "", rendered);
-    if (result == ORL_OK)
-        result = write_as(log, params->image_dir, stem, params->method, ".diff", &panels);
+    ORL_THEN(result, write_as(log, params->image_dir, stem, "photo", "", photograph));
+    ORL_THEN(result, write_as(log, params->image_dir, stem, params->method, "", rendered));
+    ORL_THEN(result, write_as(log, params->image_dir, stem, params->method, ".diff", &panels));
     orl_image_finish(&panels);
     free(stem);
     return result;
@@ -120,8 +117,7 @@ enum orl_result orl_eval_read_picture(const struct orl_log *log, const struct or
     if (result == ORL_OK)
         result = as_photograph ? orl_heldout_shrink(log, &other, n, picture)
                                : orl_bridge_resize(log, &other, width, height, picture);
-    if (result == ORL_OK)
-        result = orl_image_init(log, coverage, width, height, 1, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, coverage, width, height, 1, ORL_PIXEL_F32));
     for (int i = 0; result == ORL_OK && i < width * height; i++)
         coverage->f32[i] = 1;
     orl_image_finish(&other);

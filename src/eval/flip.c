@@ -287,8 +287,7 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
         return orl_fail(log, ORL_ERR_ARGUMENT, "pictures of %dx%d and %dx%d cannot be compared",
                         a->width, a->height, b->width, b->height);
     enum orl_result result = prepare(log, a, &one);
-    if (result == ORL_OK)
-        result = prepare(log, b, &two);
+    ORL_THEN(result, prepare(log, b, &two));
     if (result == ORL_OK && map)
         result = orl_image_init(log, map, a->width, a->height, 1, ORL_PIXEL_F32);
     if (result == ORL_OK) {

@@ -113,8 +113,7 @@ enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer 
     params.leave_out |= ORL_LAYER_NORMAL | ORL_LAYER_DEPTH;
     *picture = *coverage = (struct orl_image){0};
     enum orl_result result = orl_renderer_draw(renderer, &heldout->view, &params, skip, &frame);
-    if (result == ORL_OK)
-        result = orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, picture);
+    ORL_THEN(result, orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, picture));
     if (result == ORL_OK) {
         *coverage = frame.coverage;
         frame.coverage = (struct orl_image){0};

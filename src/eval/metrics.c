@@ -273,8 +273,7 @@ static enum orl_result prominence(const struct orl_log *log, const struct orl_im
         orl_image_init(log, &root, image->width, image->height, 1, ORL_PIXEL_F32);
     for (size_t i = 0; result == ORL_OK && i < pixel_count(image); i++)
         root.f32[i] = sqrtf(luma(image->u8 + 3 * i) / 255);
-    if (result == ORL_OK)
-        result = orl_bridge_median(log, &root, &median);
+    ORL_THEN(result, orl_bridge_median(log, &root, &median));
     if (result == ORL_OK) {
         for (size_t i = 0; i < pixel_count(image); i++)
             root.f32[i] = fabsf(root.f32[i] - median.f32[i]);
@@ -305,8 +304,7 @@ static enum orl_result count_crumbs(const struct orl_log *log, const struct orl_
     struct orl_image rendered, photograph = {0};
     size_t crumbs = 0;
     enum orl_result result = prominence(log, a, &rendered);
-    if (result == ORL_OK)
-        result = prominence(log, b, &photograph);
+    ORL_THEN(result, prominence(log, b, &photograph));
     for (int y = 0; result == ORL_OK && y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
             size_t i = (size_t)y * (size_t)a->width + (size_t)x;
@@ -343,11 +341,9 @@ enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_
     measure_psnr(a, b, coverage, &measured);
     measured.psnr_cc_db = psnr_after_fit(a, b);
     enum orl_result result = orl_metrics_ssim(log, a, b, &measured.ssim);
-    if (result == ORL_OK)
-        result = measure_rephoto(log, a, b, &measured);
+    ORL_THEN(result, measure_rephoto(log, a, b, &measured));
     size_t crumbs = 0;
-    if (result == ORL_OK)
-        result = count_crumbs(log, a, b, NULL, &crumbs);
+    ORL_THEN(result, count_crumbs(log, a, b, NULL, &crumbs));
     measured.crumbs = 1e4 * (double)crumbs / (double)pixel_count(a);
     if (result == ORL_OK)
         *metrics = measured;

@@ -67,8 +67,7 @@ static enum orl_result differ(const struct orl_log *log, const struct orl_image 
             for (size_t c = 0; c < 3; c++)
                 p[c] = p[3] * (roots.of[rendering->u8[3 * i + c]] - roots.of[photo->u8[3 * i + c]]);
         }
-        if (result == ORL_OK)
-            result = orl_bridge_blur(log, &sides[k], BLUR_TAPS, blur_px, &blurred[k]);
+        ORL_THEN(result, orl_bridge_blur(log, &sides[k], BLUR_TAPS, blur_px, &blurred[k]));
     }
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         const float *p = blurred[pictures->covered.f32[i] > 0].f32 + 4 * i;
@@ -97,20 +96,16 @@ static enum orl_result correlate(const struct orl_log *log, const struct orl_ima
     struct orl_image first, second = {0}, means[2] = {{0}, {0}}; // moments: a, b; a^2, b^2, a b
     enum orl_result result = orl_image_init(log, &first, photo->width, photo->height, 2,
                                             ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &second, photo->width, photo->height, 3, ORL_PIXEL_F32);
-    if (result == ORL_OK)
-        result = orl_image_init(log, likeness, photo->width, photo->height, 1, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, &second, photo->width, photo->height, 3, ORL_PIXEL_F32));
+    ORL_THEN(result, orl_image_init(log, likeness, photo->width, photo->height, 1, ORL_PIXEL_F32));
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         float a = brightness(&roots, &photo->u8[3 * i]);
         float b = brightness(&roots, &rendering->u8[3 * i]);
         memcpy(first.f32 + 2 * i, (const float[]){a, b}, 2 * sizeof a);
         memcpy(second.f32 + 3 * i, (const float[]){a * a, b * b, a * b}, 3 * sizeof a);
     }
-    if (result == ORL_OK)
-        result = orl_bridge_blur(log, &first, LIKENESS_TAPS, likeness_px, &means[0]);
-    if (result == ORL_OK)
-        result = orl_bridge_blur(log, &second, LIKENESS_TAPS, likeness_px, &means[1]);
+    ORL_THEN(result, orl_bridge_blur(log, &first, LIKENESS_TAPS, likeness_px, &means[0]));
+    ORL_THEN(result, orl_bridge_blur(log, &second, LIKENESS_TAPS, likeness_px, &means[1]));
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         const float *m = means[0].f32 + 2 * i, *squares = means[1].f32 + 3 * i;
         float a = fmaxf(squares[0] - m[0] * m[0], 0), b = fmaxf(squares[1] - m[1] * m[1], 0);
@@ -152,10 +147,8 @@ static enum orl_result contradict(const struct orl_log *log,
                       fmaxf(like[CONSENSUS].f32[i], like[NEAREST].f32[i]) < likeness_max;
         rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
     }
-    if (result == ORL_OK)
-        result = orl_bridge_clean_mask(log, &rough[0], &no_specks, mask);
-    if (result == ORL_OK)
-        result = orl_bridge_clean_mask(log, &rough[1], &no_specks, proof);
+    ORL_THEN(result, orl_bridge_clean_mask(log, &rough[0], &no_specks, mask));
+    ORL_THEN(result, orl_bridge_clean_mask(log, &rough[1], &no_specks, proof));
     for (int k = 0; k < RENDERINGS; k++)
         orl_image_finish(&off[k]);
     for (int k = 0; k < 2; k++) {
@@ -219,10 +212,8 @@ enum orl_result orl_occluder_mask(const struct orl_log *log,
     *mask = (struct orl_image){0};
     *share = 0;
     enum orl_result result = contradict(log, pictures, mask, &proof);
-    if (result == ORL_OK)
-        result = keep_proven(log, &pictures->covered, &proof, mask);
-    if (result == ORL_OK)
-        result = grow(log, mask);
+    ORL_THEN(result, keep_proven(log, &pictures->covered, &proof, mask));
+    ORL_THEN(result, grow(log, mask));
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         marked += mask->u8[i] > 0;
     if (result == ORL_OK && (double)marked <= occluded_max * (double)count)
@@ -371,16 +362,14 @@ enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *
     f.skip = orl_array(f.log, scene->photo_count, sizeof *f.skip);
     f.proven = orl_array(f.log, scene->photo_count, sizeof *f.proven);
     enum orl_result result = f.others && f.skip && f.proven ? set_params(&f) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_renderer_create(gpu, scene, NULL, &f.renderer);
+    ORL_THEN(result, orl_renderer_create(gpu, scene, NULL, &f.renderer));
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         orl_progress_report(progress, "occluders", (double)i, (double)scene->photo_count,
                             scene->photos[i].name);
         if (!scene->photos[i].test)
             result = find_of(&f, i, NULL);
     }
-    if (result == ORL_OK)
-        result = confirm(&f, train);
+    ORL_THEN(result, confirm(&f, train));
     orl_renderer_destroy(&f.renderer);
     free(f.others);
     free(f.skip);

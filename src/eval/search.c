@@ -170,14 +170,11 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
 {
     *s = (struct orl_search){0};
     enum orl_result result = check_keys(orl_gpu_log(gpu), keys);
-    if (result == ORL_OK)
-        result = begin(gpu, renderer, scene, params, s);
+    ORL_THEN(result, begin(gpu, renderer, scene, params, s));
     struct orl_trial first = {.key = NULL};
     bool same;
-    if (result == ORL_OK)
-        result = try_choice(s, start, &first, &same);
-    if (result == ORL_OK)
-        result = numbers(s, keys);
+    ORL_THEN(result, try_choice(s, start, &first, &same));
+    ORL_THEN(result, numbers(s, keys));
     if (result == ORL_OK)
         orl_progress_report(params->progress, "search", 1, 1, NULL);
     else

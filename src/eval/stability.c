@@ -304,10 +304,8 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
     double start = orl_time_s();
     enum orl_result result = orl_renderer_draw(renderer, &out->view, params->render, skip, &frame);
     *ms += 1e3 * (orl_time_s() - start);
-    if (result == ORL_OK)
-        result = orl_tone_srgb(log, &frame.color, &out->srgb);
-    if (result == ORL_OK)
-        result = write_frame(log, params, index, &out->srgb);
+    ORL_THEN(result, orl_tone_srgb(log, &frame.color, &out->srgb));
+    ORL_THEN(result, write_frame(log, params, index, &out->srgb));
     if (result == ORL_OK) {
         out->depth = frame.depth;
         out->coverage = frame.coverage;

@@ -106,8 +106,7 @@ enum orl_result orl_timing_take(struct orl_gpu *gpu, const struct orl_timing_par
     enum orl_result result = ms ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < params->warm_up * params->views; i++)
         result = draw(params, i, &unused[0], &unused[1]);
-    if (result == ORL_OK)
-        result = take_frames(params, ms, ms + params->frames_max, timing);
+    ORL_THEN(result, take_frames(params, ms, ms + params->frames_max, timing));
     if (result == ORL_OK && params->pass_frames)
         result = take_passes(gpu, params, timing);
     free(ms);

@@ -32,9 +32,7 @@ static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *
         if (!scene->photos[i].test)
             continue;
         result = orl_heldout_load(s->source.log, scene, i, s->params->size_divide, &view);
-        if (result == ORL_OK)
-            result = orl_heldout_compare(s->source.log, renderer, scene, &view, render, NULL, false,
-                                         &m);
+        ORL_THEN(result, orl_heldout_compare(s->source.log, renderer, scene, &view, render, NULL, false, &m));
         if (result == ORL_OK) {
             figures->held_psnr_db += m.psnr_db / (double)held;
             figures->held_ssim += m.ssim / (double)held;
@@ -53,10 +51,8 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
     struct orl_scene *scene = NULL;
     struct orl_renderer *renderer = NULL;
     enum orl_result result = orl_scene_open(s->source.log, dir, &scene);
-    if (result == ORL_OK)
-        result = orl_renderer_create(s->source.gpu, scene, NULL, &renderer);
-    if (result == ORL_OK)
-        result = compare_held(s, renderer, render, figures);
+    ORL_THEN(result, orl_renderer_create(s->source.gpu, scene, NULL, &renderer));
+    ORL_THEN(result, compare_held(s, renderer, render, figures));
     if (result == ORL_OK && s->targets.count)
         result = orl_renderer_draw(renderer, &s->targets.views[0].view, render, NULL, NULL);
     if (result == ORL_OK) {
@@ -90,20 +86,13 @@ static enum orl_result start(struct trim_search *s)
     if (result == ORL_OK &&
         !(s->first && s->now.score && s->first_state.removed))
         result = ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress,
-                                        &source->ranking);
-    if (result == ORL_OK)
-        result = orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state);
-    if (result == ORL_OK)
-        result = orl_trim_order_photos(s);
-    if (result == ORL_OK)
-        result = orl_trim_model_open(source, &s->now.state, &s->model);
+    ORL_THEN(result, orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress, &source->ranking));
+    ORL_THEN(result, orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state));
+    ORL_THEN(result, orl_trim_order_photos(s));
+    ORL_THEN(result, orl_trim_model_open(source, &s->now.state, &s->model));
     orl_trim_plan(s);
-    if (result == ORL_OK)
-        result = orl_trim_measure_all(s, true, &s->trim->before);
-    if (result == ORL_OK)
-        result = orl_trim_time_first(s);
+    ORL_THEN(result, orl_trim_measure_all(s, true, &s->trim->before));
+    ORL_THEN(result, orl_trim_time_first(s));
     if (result != ORL_OK)
         return result;
     s->now.bytes = orl_trim_model_bytes(s, s->model, &s->now.state);
@@ -123,8 +112,7 @@ static enum orl_result tune(struct trim_search *s)
         .progress = p->progress};
     enum orl_result result = orl_search_run(s->source.gpu, s->model->renderer, s->source.scene,
                                             &params, p->start, NULL, &search);
-    if (result == ORL_OK)
-        result = orl_trim_take_options(s, &search.best.params);
+    ORL_THEN(result, orl_trim_take_options(s, &search.best.params));
     orl_search_finish(&search);
     return result;
 }
@@ -138,10 +126,8 @@ static enum orl_result write_and_look(struct trim_search *s)
     // Only now, when nothing can change any more, are held-out photographs looked at.
     enum orl_result result =
         look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before);
-    if (result == ORL_OK)
-        result = orl_trim_write_scene(&s->source, &s->now.state, &trim->choice, s->part);
-    if (result == ORL_OK)
-        result = look_at(s, s->part, &s->now.state.render, &trim->after);
+    ORL_THEN(result, orl_trim_write_scene(&s->source, &s->now.state, &trim->choice, s->part));
+    ORL_THEN(result, look_at(s, s->part, &s->now.state.render, &trim->after));
     return result;
 }
 
@@ -150,14 +136,10 @@ static enum orl_result run(struct trim_search *s)
     enum orl_result result = start(s);
     if (result == ORL_OK && s->params->tune)
         result = tune(s);
-    if (result == ORL_OK)
-        result = orl_trim_climb(s);
-    if (result == ORL_OK)
-        result = orl_trim_make_faster(s);
-    if (result == ORL_OK)
-        result = orl_trim_confirm(s);
-    if (result == ORL_OK)
-        result = write_and_look(s);
+    ORL_THEN(result, orl_trim_climb(s));
+    ORL_THEN(result, orl_trim_make_faster(s));
+    ORL_THEN(result, orl_trim_confirm(s));
+    ORL_THEN(result, write_and_look(s));
     if (result == ORL_OK)
         orl_progress_report(s->params->progress, "trim", 1, 1, NULL);
     return result;
@@ -193,11 +175,9 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
     struct trim_search s = {.source = {.gpu = gpu, .log = log, .scene = scene},
                             .params = params, .trim = trim, .part = part.path,
                             .start_s = orl_time_s()};
-    if (result == ORL_OK)
-        result = run(&s);
+    ORL_THEN(result, run(&s));
     finish(&s);
-    if (result == ORL_OK)
-        result = orl_new_dir_finish(log, &part);
+    ORL_THEN(result, orl_new_dir_finish(log, &part));
     orl_new_dir_abort(log, &part);
     if (result != ORL_OK)
         orl_trim_finish(trim);

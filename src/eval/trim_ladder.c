@@ -244,8 +244,7 @@ static enum orl_result try_level(struct trim_search *s, const struct rung *rung,
         set_level(s, rung->part, level, &t);
     if (result == ORL_OK && photographs)
         result = mend(s, &t);
-    if (result == ORL_OK)
-        result = decide(s, &t, photographs, rung->share, taken);
+    ORL_THEN(result, decide(s, &t, photographs, rung->share, taken));
     orl_trim_trial_end(&t);
     return result;
 }
@@ -263,8 +262,7 @@ static enum orl_result try_option(struct trim_search *s, const char *assignment)
     t.now.state.render = next;
     snprintf(t.what, sizeof t.what, "%s", assignment);
     // Where the splats change, the photographs' depth maps are drawn anew.
-    if (result == ORL_OK)
-        result = decide(s, &t, !strstr(option->readers, "proxy="), 1, &taken);
+    ORL_THEN(result, decide(s, &t, !strstr(option->readers, "proxy="), 1, &taken));
     orl_trim_trial_end(&t);
     return result;
 }
@@ -373,10 +371,8 @@ static enum orl_result drop_textures(struct trim_search *s)
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_TEXTURES, &t);
     t.now.state.textures = ORL_TEXTURES_AUTO;
     snprintf(t.what, sizeof t.what, "textures as they were");
-    if (result == ORL_OK)
-        result = orl_trim_trial_measure(s, &t, false);
-    if (result == ORL_OK)
-        result = orl_trim_trial_take(s, &t);
+    ORL_THEN(result, orl_trim_trial_measure(s, &t, false));
+    ORL_THEN(result, orl_trim_trial_take(s, &t));
     orl_trim_trial_end(&t);
     return result;
 }
@@ -391,8 +387,7 @@ enum orl_result orl_trim_make_faster(struct trim_search *s)
         result = orl_trim_time_whole(s, &slow);
     if (result == ORL_OK && slow && s->now.state.textures != ORL_TEXTURES_AUTO) {
         result = drop_textures(s);
-        if (result == ORL_OK)
-            result = orl_trim_time_whole(s, &slow);
+        ORL_THEN(result, orl_trim_time_whole(s, &slow));
     }
     return result;
 }
@@ -406,8 +401,7 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
     t.now.state.render = *render;
     snprintf(t.what, sizeof t.what, "tuned options");
-    if (result == ORL_OK)
-        result = orl_trim_trial_measure(s, &t, false);
+    ORL_THEN(result, orl_trim_trial_measure(s, &t, false));
     bool better = result == ORL_OK && t.step_db < 0 && orl_trim_trial_fits(s, &t, 1);
     if (better)
         result = orl_trim_time_trial(s, &t);

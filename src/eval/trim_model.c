@@ -93,10 +93,8 @@ enum orl_result orl_trim_model_open(const struct trim_source *source,
         model->scene.points = model->points;
     }
     orl_trim_count_bytes(source->gpu, &points, &photos);
-    if (result == ORL_OK)
-        result = orl_renderer_create(source->gpu, &model->scene, NULL, &model->renderer);
-    if (result == ORL_OK)
-        result = draw_first_frame(source, state, model);
+    ORL_THEN(result, orl_renderer_create(source->gpu, &model->scene, NULL, &model->renderer));
+    ORL_THEN(result, draw_first_frame(source, state, model));
     orl_trim_count_bytes(source->gpu, &model->point_bytes, &model->photo_bytes);
     model->point_bytes -= points;
     model->photo_bytes -= photos;

@@ -86,8 +86,7 @@ static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *v
         orl_progress_cancelled(s->params->progress)
             ? ORL_ERR_CANCELLED
             : orl_renderer_draw(s->model->renderer, view, &render, removed, &frame);
-    if (result == ORL_OK)
-        result = orl_tone_srgb(s->source.log, &frame.color, picture);
+    ORL_THEN(result, orl_tone_srgb(s->source.log, &frame.color, picture));
     orl_frame_finish(&frame);
     return result;
 }
@@ -102,8 +101,7 @@ static enum orl_result between_loss(struct trim_search *s, const struct trim_sta
                                                       &s->targets.views[other].view, 0.5);
     struct orl_image with = {0}, without = {0};
     enum orl_result result = draw_srgb(s, &view, &s->now.state, s->first_state.removed, &with);
-    if (result == ORL_OK)
-        result = draw_srgb(s, &view, state, state->removed, &without);
+    ORL_THEN(result, draw_srgb(s, &view, state, state->removed, &without));
     if (result == ORL_OK)
         *loss_db = 10 * log10(1 + pow(10, 0.1 * (s->first[target].db -
                                                  orl_metrics_psnr_db(&with, &without))));

@@ -192,14 +192,11 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
     r.level = orl_array(log, count, sizeof *r.level);
     enum orl_result result =
         ranking->order && ranking->pixels && r.level ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = choose_views(log, scene, max_views, &views);
-    if (result == ORL_OK)
-        result = draw_views(gpu, scene, &views, progress, &r);
+    ORL_THEN(result, choose_views(log, scene, max_views, &views));
+    ORL_THEN(result, draw_views(gpu, scene, &views, progress, &r));
     for (size_t i = 0; result == ORL_OK && i < views.count; i++)
         set_levels(&r, &r.drawn[i]);
-    if (result == ORL_OK)
-        result = sort(log, &r);
+    ORL_THEN(result, sort(log, &r));
     for (size_t i = 0; r.drawn && i < views.count; i++)
         orl_nearest_points_finish(&r.drawn[i]);
     free(r.drawn);
@@ -267,8 +264,7 @@ static enum orl_result merge_points(const struct orl_log *log, const struct orl_
     float *dist2 = orl_array(log, from->count, sizeof *dist2);
     struct sums *sums = orl_array(log, to->count, sizeof *sums);
     enum orl_result result = found && dist2 && sums ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_points_nearest(log, to, from, found, dist2);
+    ORL_THEN(result, orl_points_nearest(log, to, from, found, dist2));
     for (size_t i = 0; result == ORL_OK && i < from->count; i++) {
         float room = to->radius[found[i]];
         if (dist2[i] <= room * room)
@@ -300,8 +296,7 @@ enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_
     for (size_t k = 0; result == ORL_OK && k < count; k++)
         to->radius[k] = fminf(fmaxf(to->radius[k], from->radius[order[k]]),
                               most * from->radius[order[k]]);
-    if (result == ORL_OK)
-        result = merge_points(log, from, to);
+    ORL_THEN(result, merge_points(log, from, to));
     if (result != ORL_OK)
         orl_points_finish(to);
     return result;

@@ -70,8 +70,7 @@ static enum orl_result compare(struct pair *pair, double limit, double error, si
     const struct orl_pair_timing_params params = {.time = time_one, .priv = pair, .limit = limit,
                                                   .error = error, .rounds_max = rounds_max};
     enum orl_result result = warm_up(pair);
-    if (result == ORL_OK)
-        result = orl_pair_timing_take(&params, timing);
+    ORL_THEN(result, orl_pair_timing_take(&params, timing));
     if (result == ORL_OK)
         orl_logf(pair->s->source.log, ORL_LOG_DEBUG,
                  "frames take %.3f times as long (standard error %.1f %%, limit %.3f), %zu rounds",
@@ -121,8 +120,7 @@ enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
     struct pair pair = {s, {{NULL, &s->first_state}, {s->model->renderer, &s->now.state}}, 0};
     if (result == ORL_OK)
         pair.drawn[0].renderer = whole->renderer;
-    if (result == ORL_OK)
-        result = compare(&pair, limit, 0, ROUNDS_OF_WHOLE, &timing);
+    ORL_THEN(result, compare(&pair, limit, 0, ROUNDS_OF_WHOLE, &timing));
     orl_trim_model_close(&whole);
     if (result != ORL_OK)
         return result;

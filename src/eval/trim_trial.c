@@ -220,8 +220,7 @@ enum orl_result orl_trim_confirm(struct trim_search *s)
            (s->now.loss.db > s->tolerance_db || s->now.loss.ssim > s->tolerance_ssim ||
             s->now.loss.worst_db > s->worst_db)) {
         result = take_back(s);
-        if (result == ORL_OK)
-            result = orl_trim_measure_all(s, false, &s->trim->after);
+        ORL_THEN(result, orl_trim_measure_all(s, false, &s->trim->after));
     }
     return result;
 }

@@ -208,12 +208,9 @@ static enum orl_result write_parts(const struct writer *w)
     static const char *const trees[] = {"masks", "background", "occluders", "images_linear",
                                          "frames", "mesh.ply"};
     enum orl_result result = write_photos(w);
-    if (result == ORL_OK)
-        result = write_points(w);
-    if (result == ORL_OK)
-        result = orl_subset_write_model(w->log, w->source->scene, w->keep, w->out);
-    if (result == ORL_OK)
-        result = orl_subset_add_checksums(w->log, w->out, w->sums);
+    ORL_THEN(result, write_points(w));
+    ORL_THEN(result, orl_subset_write_model(w->log, w->source->scene, w->keep, w->out));
+    ORL_THEN(result, orl_subset_add_checksums(w->log, w->out, w->sums));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(trees); i++)
         result = copy_tree(w, trees[i]);
     return result == ORL_OK ? write_manifest(w) : result;
@@ -231,11 +228,9 @@ enum orl_result orl_trim_write_scene(const struct trim_source *source,
     for (size_t i = 0; w.keep && i < count; i++)
         w.keep[i] = !state->removed[i];
     enum orl_result result = w.sums && w.keep ? orl_dir_make(w.log, out) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_trim_model_open(source, state, &model);
+    ORL_THEN(result, orl_trim_model_open(source, state, &model));
     w.model = model;
-    if (result == ORL_OK)
-        result = write_parts(&w);
+    ORL_THEN(result, write_parts(&w));
     orl_trim_model_close(&model);
     json_decref(w.sums);
     free(w.keep);

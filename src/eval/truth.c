@@ -51,8 +51,7 @@ static enum orl_result read_summary(const struct orl_log *log, struct orl_truth 
     json_t *root = NULL;
     char *path = orl_path_join(log, truth->dir, "synth.json");
     enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = take_exposures(log, path, root, truth);
+    ORL_THEN(result, take_exposures(log, path, root, truth));
     json_decref(root);
     free(path);
     return result;
@@ -128,8 +127,7 @@ enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth
     char *path = orl_format(log, "%s/radiance/%.*s.exr", truth->dir,
                             (int)stem_length(photo->name), photo->name);
     enum orl_result result = path ? orl_exr_read(log, path, rgb, 3, &seen) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = bring_to_pixels(log, truth, photo, path, &seen, radiance);
+    ORL_THEN(result, bring_to_pixels(log, truth, photo, path, &seen, radiance));
     // A photograph of exposure e shows radiance times 2^e. The scene's unit does so at its middle
     // exposure, which is exposure_ev below e.
     float scale = (float)exp2(truth->ev[index] - photo->exposure_ev);
@@ -150,12 +148,10 @@ enum orl_result orl_truth_vehicle(const struct orl_log *log, const struct orl_tr
     char *path = orl_format(log, "%s/vehicle/%.*s.png", truth->dir,
                             (int)stem_length(photo->name), photo->name);
     enum orl_result result = path ? orl_picture_read(log, path, 1, &mask) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_image_init(log, &seen, mask.width, mask.height, 1, ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, &seen, mask.width, mask.height, 1, ORL_PIXEL_F32));
     for (size_t i = 0; result == ORL_OK && i < orl_image_bytes(&mask); i++)
         seen.f32[i] = (float)mask.u8[i] / 255;
-    if (result == ORL_OK)
-        result = bring_to_pixels(log, truth, photo, path, &seen, vehicle);
+    ORL_THEN(result, bring_to_pixels(log, truth, photo, path, &seen, vehicle));
     orl_image_finish(&mask);
     orl_image_finish(&seen);
     free(path);

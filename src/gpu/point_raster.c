@@ -52,12 +52,10 @@ enum orl_result orl_point_raster_create(struct orl_gpu *gpu, const float (*posit
     struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA8,
                                     .tag = "raster colour"};
     enum orl_result result = make_vertices(r, positions, colors, count);
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &params, &r->color);
+    ORL_THEN(result, orl_tex_create(gpu, &params, &r->color));
     params.format = GL_DEPTH_COMPONENT32F;
     params.tag = "raster depth";
-    if (result == ORL_OK)
-        result = orl_tex_create(gpu, &params, &r->depth);
+    ORL_THEN(result, orl_tex_create(gpu, &params, &r->depth));
     if (result != ORL_OK)
         orl_point_raster_destroy(&r);
     *out = r;

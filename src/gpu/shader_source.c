@@ -91,8 +91,7 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
         result = expand(gpu, source, check_file, NULL, 1);
     if (result == ORL_OK && source->checked && strcmp(file, check_file) != 0)
         result = check_text(gpu, index, &text, &owned);
-    if (result == ORL_OK)
-        result = append_line_mark(gpu, source, 1, index);
+    ORL_THEN(result, append_line_mark(gpu, source, 1, index));
     int number = 1;
     for (const char *line = text; result == ORL_OK && *line; number++) {
         const char *end = strchr(line, '\n');
@@ -101,15 +100,13 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
         const char *included = included_file(line, slots, quoted);
         if (included) {
             result = expand(gpu, source, included, slots, depth + 1);
-            if (result == ORL_OK)
-                result = append_line_mark(gpu, source, number + 1, index);
+            ORL_THEN(result, append_line_mark(gpu, source, number + 1, index));
         } else {
             result = orl_bytes_add(gpu->log, &source->text, line, length);
         }
         line += length;
     }
-    if (result == ORL_OK)
-        result = orl_bytes_add(gpu->log, &source->text, "\n", 1);
+    ORL_THEN(result, orl_bytes_add(gpu->log, &source->text, "\n", 1));
     free(owned);
     return result;
 }
@@ -124,14 +121,11 @@ enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
     for (const char *line = defines; result == ORL_OK && line && *line;) {
         size_t length = strcspn(line, "\n");
         result = orl_bytes_add(gpu->log, &source->text, "#define ", 8);
-        if (result == ORL_OK)
-            result = orl_bytes_add(gpu->log, &source->text, line, length);
-        if (result == ORL_OK)
-            result = orl_bytes_add(gpu->log, &source->text, "\n", 1);
+        ORL_THEN(result, orl_bytes_add(gpu->log, &source->text, line, length));
+        ORL_THEN(result, orl_bytes_add(gpu->log, &source->text, "\n", 1));
         line += length + (line[length] == '\n');
     }
-    if (result == ORL_OK)
-        result = expand(gpu, source, file, slots, 0);
+    ORL_THEN(result, expand(gpu, source, file, slots, 0));
     if (result != ORL_OK)
         orl_shader_source_finish(source);
     return result;

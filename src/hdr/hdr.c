@@ -93,8 +93,7 @@ enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, c
                                       samples * view->camera.height);
     memset(frame, 0, sizeof *frame);
     enum orl_result result = draw(hdr, &large, skip, &fine);
-    if (result == ORL_OK)
-        result = orl_frame_reduce(orl_gpu_log(hdr->gpu), &fine, samples, frame);
+    ORL_THEN(result, orl_frame_reduce(orl_gpu_log(hdr->gpu), &fine, samples, frame));
     orl_frame_finish(&fine);
     return result;
 }

@@ -66,14 +66,10 @@ enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_fra
     memset(frame, 0, sizeof *frame);
     ORL_REQUIRE(log, factor >= 1 && factor <= 4);
     enum orl_result result = reduce_mean(log, &fine->color, factor, &frame->color);
-    if (result == ORL_OK)
-        result = reduce_mean(log, &fine->depth, factor, &frame->depth);
-    if (result == ORL_OK)
-        result = reduce_mean(log, &fine->normal, factor, &frame->normal);
-    if (result == ORL_OK)
-        result = reduce_mean(log, &fine->coverage, factor, &frame->coverage);
-    if (result == ORL_OK)
-        result = reduce_mean(log, &fine->confidence, factor, &frame->confidence);
+    ORL_THEN(result, reduce_mean(log, &fine->depth, factor, &frame->depth));
+    ORL_THEN(result, reduce_mean(log, &fine->normal, factor, &frame->normal));
+    ORL_THEN(result, reduce_mean(log, &fine->coverage, factor, &frame->coverage));
+    ORL_THEN(result, reduce_mean(log, &fine->confidence, factor, &frame->confidence));
     if (result == ORL_OK) {
         reduce_depth(&fine->depth, factor, &frame->depth);
         normalize(&frame->normal);

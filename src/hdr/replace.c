@@ -41,8 +41,7 @@ static enum orl_result write_picture(const struct replacement *r, const char *na
     struct orl_image picture = {0};
     char *path = orl_format(r->log, "%s/images/%s", r->dir, name);
     enum orl_result result = path ? orl_file_make_folder(r->log, path) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_tone_apply(r->log, light, &r->params->tone, &picture);
+    ORL_THEN(result, orl_tone_apply(r->log, light, &r->params->tone, &picture));
     if (result == ORL_OK)
         result = orl_path_has_extension(name, "jpg jpeg") ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
                                : orl_png_write(r->log, path, &picture);
@@ -56,8 +55,7 @@ static enum orl_result write_light(const struct replacement *r, const char *name
 {
     char *path = orl_format(r->log, "%s/images_linear/%s.exr", r->dir, name);
     enum orl_result result = path ? orl_file_make_folder(r->log, path) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_linear_write(r->log, path, light);
+    ORL_THEN(result, orl_linear_write(r->log, path, light));
     free(path);
     return result;
 }
@@ -67,12 +65,9 @@ static enum orl_result replace_photo(const struct replacement *r, size_t photo)
     const struct orl_photo *p = &r->scene->photos[photo];
     struct orl_frame frame = {0};
     enum orl_result result = orl_hdr_draw(r->hdr, &p->view, r->params->skip, &frame);
-    if (result == ORL_OK)
-        result = write_picture(r, p->name, &frame.color);
-    if (result == ORL_OK)
-        result = write_light(r, p->name, &frame.color);
-    if (result == ORL_OK)
-        result = orl_subset_copy_masks(r->log, r->scene, photo, r->dir);
+    ORL_THEN(result, write_picture(r, p->name, &frame.color));
+    ORL_THEN(result, write_light(r, p->name, &frame.color));
+    ORL_THEN(result, orl_subset_copy_masks(r->log, r->scene, photo, r->dir));
     orl_frame_finish(&frame);
     return result;
 }
@@ -145,17 +140,12 @@ enum orl_result orl_hdr_replace_series(struct orl_hdr *hdr,
     struct replacement r = {.log = orl_gpu_log(hdr->gpu), .hdr = hdr, .scene = hdr->scene,
                             .params = params, .progress = progress};
     enum orl_result result = choose(&r);
-    if (result == ORL_OK)
-        result = orl_new_dir_begin(r.log, params->out, &r.new_dir);
+    ORL_THEN(result, orl_new_dir_begin(r.log, params->out, &r.new_dir));
     r.dir = r.new_dir.path;
-    if (result == ORL_OK)
-        result = orl_subset_begin(r.log, r.scene, r.keep, r.dir, &r.manifest);
-    if (result == ORL_OK)
-        result = write_photos(&r);
-    if (result == ORL_OK)
-        result = write_manifest(&r);
-    if (result == ORL_OK)
-        result = orl_new_dir_finish(r.log, &r.new_dir);
+    ORL_THEN(result, orl_subset_begin(r.log, r.scene, r.keep, r.dir, &r.manifest));
+    ORL_THEN(result, write_photos(&r));
+    ORL_THEN(result, write_manifest(&r));
+    ORL_THEN(result, orl_new_dir_finish(r.log, &r.new_dir));
     orl_new_dir_abort(r.log, &r.new_dir);
     json_decref(r.manifest);
     free(r.keep);

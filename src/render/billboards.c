@@ -187,8 +187,7 @@ static enum orl_result require(struct frame *frame, struct ranked_photo *ranked)
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
         result = orl_photos_require(frame, ranked[i].photo, false);
-        if (result == ORL_OK)
-            result = orl_photos_require_mask(frame, ranked[i].photo);
+        ORL_THEN(result, orl_photos_require_mask(frame, ranked[i].photo));
     }
     return result;
 }
@@ -206,8 +205,7 @@ static enum orl_result paint(struct frame *frame)
         orl_rank_by_axis(frame->scene, frame->view, frame->chosen, frame->chosen_count, ranked);
         result = require(frame, ranked);
     }
-    if (result == ORL_OK)
-        result = orl_voxels_see(frame, state);
+    ORL_THEN(result, orl_voxels_see(frame, state));
     if (result != ORL_OK)
         goto end;
     orl_pass_begin(frame->gpu, "billboards");

@@ -98,8 +98,7 @@ static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points
     enum orl_result result = host.points && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t b = 0; result == ORL_OK && b < host.block_count; b++)
         fill_block(points, order + b * BLOCK, b, &host);
-    if (result == ORL_OK)
-        result = make_buffers(gpu, chunk, &host);
+    ORL_THEN(result, make_buffers(gpu, chunk, &host));
     free(host.points);
     free(host.blocks);
     return result;

@@ -43,8 +43,7 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct 
     if (result == ORL_OK)
         result = orl_buf_create(gpu, ORL_OWNER_FRAME, "photographs of a frame",
                                 photo_count * sizeof *gather->list, NULL, &gather->photos);
-    if (result == ORL_OK)
-        result = orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows);
+    ORL_THEN(result, orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows));
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -316,8 +315,7 @@ static enum orl_result sweep_over(const struct frame *frame, int sweep)
         enum orl_result result = ORL_OK;
         for (size_t i = 0; !frame->progressive && result == ORL_OK && i < count; i++)
             result = orl_photos_require(frame, frame->chosen[first + i], depth);
-        if (result == ORL_OK)
-            result = gather(frame, first, count, sweep);
+        ORL_THEN(result, gather(frame, first, count, sweep));
         if (result != ORL_OK)
             return result;
     }

@@ -54,12 +54,9 @@ enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
     if (!orl_guess_applies(frame))
         return ORL_OK;
     enum orl_result result = orl_make_room(gpu, "costs of depths", bytes, &guess->costs);
-    if (result == ORL_OK)
-        result = orl_make_room(gpu, "costs of paths", bytes, &guess->sums);
-    if (result == ORL_OK)
-        result = resize_cells(gpu, "estimated depth", width, height, &guess->estimated);
-    if (result == ORL_OK)
-        result = resize_cells(gpu, "picked depth", width, height, &guess->picked);
+    ORL_THEN(result, orl_make_room(gpu, "costs of paths", bytes, &guess->sums));
+    ORL_THEN(result, resize_cells(gpu, "estimated depth", width, height, &guess->estimated));
+    ORL_THEN(result, resize_cells(gpu, "picked depth", width, height, &guess->picked));
     return result;
 }
 

@@ -24,8 +24,7 @@ enum orl_result orl_importance_create(struct orl_gpu *gpu, const struct orl_scen
         return ORL_ERR_MEMORY;
     c->gpu = gpu;
     enum orl_result result = orl_proxy_create(gpu, scene, &orl_proxy_splats, 0, &c->proxy);
-    if (result == ORL_OK)
-        result = orl_cloud_map(gpu, &scene->points, &c->points, &c->count);
+    ORL_THEN(result, orl_cloud_map(gpu, &scene->points, &c->points, &c->count));
     if (result != ORL_OK)
         orl_importance_destroy(out);
     return result;
@@ -72,11 +71,8 @@ enum orl_result orl_importance_draw(struct orl_importance *c, const struct orl_v
     nearest->point = orl_array(log, count, sizeof *nearest->point);
     nearest->depth = orl_array(log, count, sizeof *nearest->depth);
     enum orl_result result = nearest->point && nearest->depth ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_proxy_draw(c->gpu, &c->proxy, view, &params, false, &c->proxy.view_target,
-                                &surface);
-    if (result == ORL_OK)
-        result = read_back(c, nearest);
+    ORL_THEN(result, orl_proxy_draw(c->gpu, &c->proxy, view, &params, false, &c->proxy.view_target, &surface));
+    ORL_THEN(result, read_back(c, nearest));
     if (result != ORL_OK)
         orl_nearest_points_finish(nearest);
     return result;

@@ -87,10 +87,8 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
     if (result == ORL_OK && !orl_path_is_file(path))
         result = orl_fail(log, ORL_ERR_NOT_FOUND,
                           "%s: not there; --mesh of oriel prepare or oriel import makes one", path);
-    if (result == ORL_OK)
-        result = orl_mesh_read(log, path, &state->mesh);
-    if (result == ORL_OK)
-        result = orl_mesh_state_upload(gpu, state);
+    ORL_THEN(result, orl_mesh_read(log, path, &state->mesh));
+    ORL_THEN(result, orl_mesh_state_upload(gpu, state));
     free(path);
     return result;
 }

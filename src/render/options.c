@@ -205,8 +205,7 @@ enum orl_result orl_render_params_assign(const struct orl_log *log,
     struct orl_render_params changed = *params;
     for (size_t i = 0; i < count; i++) {
         enum orl_result result = find_key(log, assignments[i], &option);
-        if (result == ORL_OK)
-            result = set_value(log, option, assignments[i] + strlen(option->key) + 1, &changed);
+        ORL_THEN(result, set_value(log, option, assignments[i] + strlen(option->key) + 1, &changed));
         if (result != ORL_OK)
             return result;
     }

@@ -114,8 +114,7 @@ enum orl_result orl_frame_write(const struct orl_log *log, const char *path,
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: must end in .png or .exr", path);
     struct orl_image srgb = {0};
     enum orl_result result = orl_tone_apply(log, &frame->color, &output->tone, &srgb);
-    if (result == ORL_OK)
-        result = orl_png_write(log, path, &srgb);
+    ORL_THEN(result, orl_png_write(log, path, &srgb));
     if (result == ORL_OK && layers->depth)
         result = write_layer(log, path, "depth", &frame->depth, true);
     if (result == ORL_OK && layers->normal)

@@ -449,8 +449,7 @@ static enum orl_result load_color(const struct frame *frame, size_t index)
     if (!orl_prefetch_take_photo(frame->prefetch, index, &image))
         result = orl_photo_read(orl_gpu_log(frame->gpu), photos->scene, index, photos->radiance,
                                 &image);
-    if (result == ORL_OK)
-        result = orl_photos_put(frame->gpu, photos, index, &image);
+    ORL_THEN(result, orl_photos_put(frame->gpu, photos, index, &image));
     orl_image_finish(&image);
     return result;
 }
@@ -525,9 +524,7 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
     enum orl_result result = ORL_OK;
     if (!photos->depth)
         result = orl_tex_create(frame->gpu, &photos->depth_params, &photos->depth);
-    if (result == ORL_OK)
-        result = orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false, target,
-                                &surface);
+    ORL_THEN(result, orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false, target, &surface));
     if (result != ORL_OK)
         return result;
     if (has_shadow_maps(frame)) {
@@ -607,9 +604,7 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
         result = ORL_ERR_MEMORY;
     if (result == ORL_OK && !photos->background)
         result = orl_tex_create(frame->gpu, &params, &photos->background);
-    if (result == ORL_OK)
-        result = orl_bridge_resize(log, &whole, state->color_camera.width,
-                                   state->color_camera.height, &image);
+    ORL_THEN(result, orl_bridge_resize(log, &whole, state->color_camera.width, state->color_camera.height, &image));
     if (result == ORL_OK) {
         write_pixels(&image, photos->background, state->slot);
         orl_tex_make_mipmaps(photos->background, state->slot);
@@ -676,8 +671,7 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
         return ORL_OK;
     enum orl_result result =
         photos->mask ? ORL_OK : orl_tex_create(frame->gpu, &params, &photos->mask);
-    if (result == ORL_OK)
-        result = make_alpha(frame, photo, &alpha);
+    ORL_THEN(result, make_alpha(frame, photo, &alpha));
     if (result == ORL_OK) {
         orl_tex_write_part(photos->mask, 0, state->slot, 0, 0, alpha.width, alpha.height, GL_RED,
                            GL_UNSIGNED_BYTE, alpha.data);

@@ -63,8 +63,7 @@ static enum orl_result read_silhouettes(struct prefetch *a)
         result = orl_photo_mask_read(NULL, &a->scene, photo, &a->mask[photo]);
         all[i] = (struct orl_silhouette){a->scene.photos[photo].view, a->mask[photo]};
     }
-    if (result == ORL_OK)
-        result = orl_cones_make(NULL, all, a->masked_count, &a->cones);
+    ORL_THEN(result, orl_cones_make(NULL, all, a->masked_count, &a->cones));
     free(all);
     return result;
 }

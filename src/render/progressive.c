@@ -85,8 +85,7 @@ static enum orl_result upload(struct loading *loading, size_t photo)
         double start = orl_time_s();
         photos->states[photo].last_use = ++photos->clock;
         result = orl_photos_put(loading->frame->gpu, photos, photo, &image);
-        if (result == ORL_OK)
-            result = end_step(loading, start, &photos->costs.color);
+        ORL_THEN(result, end_step(loading, start, &photos->costs.color));
         break;
     }
     }
@@ -99,8 +98,7 @@ static enum orl_result draw_depth(struct loading *loading, size_t photo, int div
     struct photo_costs *costs = &loading->frame->photos->costs;
     double start = orl_time_s();
     enum orl_result result = orl_photos_draw_depth(loading->frame, photo, divide);
-    if (result == ORL_OK)
-        result = end_step(loading, start, divide > 1 ? &costs->coarse : &costs->depth);
+    ORL_THEN(result, end_step(loading, start, divide > 1 ? &costs->coarse : &costs->depth));
     return result;
 }
 
@@ -214,12 +212,9 @@ enum orl_result orl_progressive_admit(struct frame *frame, bool depth)
     // The surface is drawn first: its time does not count as that of photographs.
     enum orl_result result = orl_gpu_finish(frame->gpu);
     loading.start_s = orl_time_s();
-    if (result == ORL_OK)
-        result = sort(frame, &loading);
-    if (result == ORL_OK)
-        result = ask(&loading);
-    if (result == ORL_OK)
-        result = bring(&loading);
+    ORL_THEN(result, sort(frame, &loading));
+    ORL_THEN(result, ask(&loading));
+    ORL_THEN(result, bring(&loading));
     for (size_t i = 0; result == ORL_OK && i < loading.count; i++)
         frame->progressive->missing += frame->photos->states[loading.order[i]].usable &&
                                        !is_complete(&loading, loading.order[i]);

@@ -65,8 +65,7 @@ enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *sc
 {
     *proxy = (struct proxy){.kind = kind};
     enum orl_result result = kind->create(gpu, scene, max_bytes, &proxy->state);
-    if (result == ORL_OK)
-        result = find_vertices(orl_gpu_log(gpu), proxy, scene);
+    ORL_THEN(result, find_vertices(orl_gpu_log(gpu), proxy, scene));
     return result;
 }
 

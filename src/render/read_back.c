@@ -30,8 +30,7 @@ static enum orl_result read_color(const struct frame *frame, bool coverage,
     enum orl_result result = make(frame, 3, &out->color);
     if (result == ORL_OK && coverage)
         result = make(frame, 1, &out->coverage);
-    if (result == ORL_OK)
-        result = stage(frame, 4, staging);
+    ORL_THEN(result, stage(frame, 4, staging));
     if (result != ORL_OK)
         return result;
     const float *rgba = staging->f32;
@@ -70,8 +69,7 @@ static enum orl_result read_confidence(const struct frame *frame, struct orl_ima
                                        struct orl_frame *out)
 {
     enum orl_result result = make(frame, 1, &out->confidence);
-    if (result == ORL_OK)
-        result = stage(frame, 2, staging);
+    ORL_THEN(result, stage(frame, 2, staging));
     if (result != ORL_OK)
         return result;
     const float *sums = staging->f32;

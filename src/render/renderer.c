@@ -101,14 +101,12 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     r->point_bytes = scene->lod ? params->max_vram_bytes / 3 : 0;
     struct proxy *splats;
     enum orl_result result = r->chosen && r->selected ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = find_proxy(r, &orl_proxy_splats, &splats);
+    ORL_THEN(result, find_proxy(r, &orl_proxy_splats, &splats));
     if (result == ORL_OK)
         result = orl_photos_init(gpu, scene, params,
                                  params->max_vram_bytes ? photo_budget(r, params->max_vram_bytes)
                                                         : 0, &r->photos);
-    if (result == ORL_OK)
-        result = orl_gather_init(gpu, scene->photo_count, &r->gather);
+    ORL_THEN(result, orl_gather_init(gpu, scene->photo_count, &r->gather));
     if (result != ORL_OK)
         orl_renderer_destroy(&r);
     *out = r;
@@ -186,8 +184,7 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
         {"mean of pictures", orl_reconstruction_count(frame) > 1, GL_RGBA32F, &r->mean},
     };
     enum orl_result result = orl_fill_resize(r->gpu, &r->fill, width, height);
-    if (result == ORL_OK)
-        result = orl_soften_resize(r->gpu, &r->soften, width, height);
+    ORL_THEN(result, orl_soften_resize(r->gpu, &r->soften, width, height));
     if (result == ORL_OK && !frame->radiance)
         result = orl_edges_resize(r->gpu, &r->edges, width, height);
     if (result == ORL_OK && frame->finishes)
@@ -215,8 +212,7 @@ static enum orl_result draw_picture(struct frame *frame, const struct orl_render
         orl_fill_depth(frame);
     if (orl_frame_shows_room(frame))
         result = orl_room_paint(frame);
-    if (result == ORL_OK)
-        result = painter->paint(frame);
+    ORL_THEN(result, painter->paint(frame));
     if (frame->progressive) // those that came with this frame are in the next one's room
         frame->progressive->missing += frame->room_absent;
     for (const struct post_pass *pass = orl_post_passes; result == ORL_OK && pass->name; pass++) {
@@ -291,8 +287,7 @@ static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame,
     }
     if (result == ORL_OK && out)
         result = orl_read_back(frame, &r->staging, out);
-    if (result == ORL_OK)
-        result = orl_gpu_finish(r->gpu);
+    ORL_THEN(result, orl_gpu_finish(r->gpu));
     if (result == ORL_OK && next)
         result = orl_prefetch_collect(r->gpu, next);
     return result;
@@ -306,10 +301,8 @@ static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
         frame->prefetch = r->prefetch;
     enum orl_result result = orl_proxy_update(frame);
     frame->depth_key = orl_photos_depth_key(frame);
-    if (result == ORL_OK)
-        result = orl_photos_ready(r->gpu, &r->photos);
-    if (result == ORL_OK)
-        result = resize(r, frame);
+    ORL_THEN(result, orl_photos_ready(r->gpu, &r->photos));
+    ORL_THEN(result, resize(r, frame));
     frame->picture = r->picture;
     frame->trusted = r->trusted;
     frame->room = r->room;
@@ -341,8 +334,7 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     result = ready_frame(r, &frame);
     if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
         result = orl_prefetch_create(&frame, r->expected, &next);
-    if (result == ORL_OK)
-        result = finish_frame(r, &frame, out && !(params->leave_out & ORL_LAYER_NORMAL), next, out);
+    ORL_THEN(result, finish_frame(r, &frame, out && !(params->leave_out & ORL_LAYER_NORMAL), next, out));
     // Where small maps are kept to save memory, they are picked from ones that take more than all.
     if (r->scene->defaults.depth_divide > 1)
         orl_proxy_free_photo_target(r->gpu, proxy);

@@ -12,8 +12,7 @@ enum orl_result orl_sequence_write_view(const struct orl_log *log, const struct 
 {
     struct orl_frame frame = {0};
     enum orl_result result = s->draw(s->priv, view, &frame);
-    if (result == ORL_OK)
-        result = orl_frame_write(log, file, view, &frame, s->output);
+    ORL_THEN(result, orl_frame_write(log, file, view, &frame, s->output));
     orl_frame_finish(&frame);
     return result;
 }
@@ -46,8 +45,7 @@ enum orl_result orl_sequence_write_video(const struct orl_log *log, const struct
                         "%s.frames is in the way: frames are kept there meanwhile", file);
     }
     enum orl_result result = orl_sequence_write_dir(log, s, dir, "png");
-    if (result == ORL_OK)
-        result = orl_video_encode(log, s->progress, dir, fps, file);
+    ORL_THEN(result, orl_video_encode(log, s->progress, dir, fps, file));
     enum orl_result removed = orl_dir_remove(log, dir);
     free(dir);
     return result != ORL_OK ? result : removed;

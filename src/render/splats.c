@@ -74,8 +74,7 @@ static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
                                         .tag = "surfel pyramid"};
         result = orl_tex_create(gpu, &params, &t->surfel_a[i]);
         params.format = GL_RG32UI;
-        if (result == ORL_OK)
-            result = orl_tex_create(gpu, &params, &t->surfel_b[i]);
+        ORL_THEN(result, orl_tex_create(gpu, &params, &t->surfel_b[i]));
     }
     return result;
 }

@@ -100,8 +100,7 @@ static enum orl_result paint(struct frame *frame)
         result = orl_progressive_admit(frame, true);
     for (size_t i = 0; !frame->progressive && result == ORL_OK && i < frame->chosen_count; i++)
         result = orl_photos_require(frame, frame->chosen[i], true);
-    if (result == ORL_OK)
-        result = paint_chosen(frame);
+    ORL_THEN(result, paint_chosen(frame));
     return result == ORL_OK ? orl_progressive_underpaint(frame) : result;
 }
 

@@ -86,8 +86,7 @@ static enum orl_result update(const struct frame *frame, void *handle, bool *cha
     *changed = true;
     orl_pass_begin(frame->gpu, "hull");
     enum orl_result result = make(frame, state, hull);
-    if (result == ORL_OK)
-        result = upload(frame->gpu, state, hull);
+    ORL_THEN(result, upload(frame->gpu, state, hull));
     orl_pass_end(frame->gpu);
     if (result != ORL_OK)
         forget(frame->gpu, state);

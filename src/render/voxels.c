@@ -113,12 +113,9 @@ enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouett
     struct orl_buf *field = NULL;
     memset(voxels, 0, sizeof *voxels);
     enum orl_result result = orl_cones_make(log, silhouettes, count, &cones);
-    if (result == ORL_OK)
-        result = orl_cones_carve(gpu, &cones, side, &field);
-    if (result == ORL_OK)
-        result = orl_voxels_read(log, &cones, side, field, voxels);
-    if (result == ORL_OK)
-        result = orl_voxels_list(log, voxels);
+    ORL_THEN(result, orl_cones_carve(gpu, &cones, side, &field));
+    ORL_THEN(result, orl_voxels_read(log, &cones, side, field, voxels));
+    ORL_THEN(result, orl_voxels_list(log, voxels));
     orl_buf_destroy(gpu, &field);
     orl_cones_finish(&cones);
     if (result != ORL_OK)
@@ -177,8 +174,7 @@ enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_poin
                           (size_t)side * ((size_t)at[1] + (size_t)side * (size_t)at[2])] =
                 (float)-voxel;
     }
-    if (result == ORL_OK)
-        result = orl_voxels_list(log, voxels);
+    ORL_THEN(result, orl_voxels_list(log, voxels));
     if (result != ORL_OK)
         orl_voxels_finish(voxels);
     return result;
@@ -219,8 +215,7 @@ enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels
     if (!silhouettes)
         return ORL_ERR_MEMORY;
     enum orl_result result = read_silhouettes(frame, silhouettes, &count);
-    if (result == ORL_OK)
-        result = orl_voxels_carve(frame->gpu, silhouettes, count, orl_voxels_side(frame), voxels);
+    ORL_THEN(result, orl_voxels_carve(frame->gpu, silhouettes, count, orl_voxels_side(frame), voxels));
     for (size_t i = 0; i < count; i++)
         orl_image_finish(&silhouettes[i].mask);
     free(silhouettes);

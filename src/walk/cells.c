@@ -63,8 +63,7 @@ static enum orl_result make_order(const struct orl_log *log, const struct orl_po
     if (points->count > UINT32_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
     enum orl_result result = orl_point_cube_find(log, points, &cube);
-    if (result == ORL_OK)
-        result = orl_point_curve(log, points, &cube, &curve, &order->count);
+    ORL_THEN(result, orl_point_curve(log, points, &cube, &curve, &order->count));
     order->index = result == ORL_OK ? orl_array(log, order->count, sizeof *order->index) : NULL;
     if (order->index) {
         order->count = drop_flat(points, curve, order->count);
@@ -256,8 +255,7 @@ enum orl_result orl_site_points(struct site *site, const struct orl_points *poin
     w.coarse_data = orl_array(site->log, (size_t)ceil(count * w.coarse) + w.order.cells,
                               POINT_BYTES);
     result = w.words && w.coarse_data ? write_files(&w, files) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = write_coarse(&w, &coarse);
+    ORL_THEN(result, write_coarse(&w, &coarse));
     if (result == ORL_OK) {
         *out = json_pack("{s:I, s:O, s:O}", "count", (json_int_t)(site->report->points - before), "coarse",
                          coarse, "files", files);
@@ -280,8 +278,7 @@ enum orl_result orl_site_scene_points(struct site *site, json_t **out)
     enum orl_result result = lod ? orl_lod_sample(lod, most, &level) : ORL_OK;
     if (result == ORL_OK && site->carves)
         result = orl_site_room(site, &walls);
-    if (result == ORL_OK)
-        result = orl_site_points(site, site->carves ? &walls : lod ? &level : &site->scene->points, most, out);
+    ORL_THEN(result, orl_site_points(site, site->carves ? &walls : lod ? &level : &site->scene->points, most, out));
     if (result == ORL_OK)
         site->report->first_bytes +=
             (size_t)json_integer_value(json_object_get(json_object_get(*out, "coarse"), "bytes"));

@@ -87,10 +87,8 @@ enum orl_result orl_content_init(const struct orl_log *log, const struct orl_sce
         for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
             if (scene->photos[i].test == (test == 1))
                 content->photos[content->photo_count++] = i;
-    if (result == ORL_OK)
-        result = orl_walk_settings_read(log, scene, &content->settings);
-    if (result == ORL_OK)
-        result = make_texts(content);
+    ORL_THEN(result, orl_walk_settings_read(log, scene, &content->settings));
+    ORL_THEN(result, make_texts(content));
     if (result != ORL_OK)
         orl_content_finish(content);
     return result;
@@ -99,8 +97,7 @@ enum orl_result orl_content_init(const struct orl_log *log, const struct orl_sce
 enum orl_result orl_content_change(struct content *content, json_t *settings)
 {
     enum orl_result result = orl_walk_settings_check(content->log, "a client's settings", settings);
-    if (result == ORL_OK)
-        result = orl_walk_settings_write(content->log, content->scene, settings);
+    ORL_THEN(result, orl_walk_settings_write(content->log, content->scene, settings));
     if (result != ORL_OK)
         return result;
     json_decref(content->settings);
@@ -151,9 +148,7 @@ static enum orl_result make_picture(const struct content *content, size_t number
     if (shrinks)
         result = orl_bridge_resize(log, &image, (image.width * side + longer - 1) / longer,
                                    (image.height * side + longer - 1) / longer, &small);
-    if (result == ORL_OK)
-        result = orl_jpeg_encode(log, shrinks ? &small : &image, quality, &file->owned,
-                                 &file->size);
+    ORL_THEN(result, orl_jpeg_encode(log, shrinks ? &small : &image, quality, &file->owned, &file->size));
     file->type = "image/jpeg";
     file->data = file->owned;
     file->is_private = true;

@@ -274,16 +274,14 @@ enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_req
     double start = orl_time_s();
     enum orl_result result = draw(walk, request, params, &picture, &outcome);
     double drawn = orl_time_s();
-    if (result == ORL_OK)
-        result = orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg.data, &jpeg.size);
+    ORL_THEN(result, orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg.data, &jpeg.size));
     double end = orl_time_s();
     if (request->measures)
         frame->figures = finish_measuring(walk, drawn - start, end - drawn);
     const uint32_t header[WALK_FRAME_WORDS] = {
         request->number, (uint32_t)(1e6 * (end - start)), (uint32_t)picture.width,
         (uint32_t)picture.height, (uint32_t)outcome.missing, (uint32_t)request->pick_count};
-    if (result == ORL_OK)
-        result = assemble(walk->log, header, outcome.picked, before, &jpeg, frame);
+    ORL_THEN(result, assemble(walk->log, header, outcome.picked, before, &jpeg, frame));
     if (result != ORL_OK) {
         json_decref(frame->figures);
         *frame = (struct walk_frame){0};

@@ -83,14 +83,12 @@ static enum orl_result take_picture(struct live *live, const struct camera *came
     const struct orl_difference_params params = {ORL_DIFFERENCE_DEFAULTS};
     struct orl_image picture = {0}, mask = {0};
     enum orl_result result = orl_picture_read(live->log, path, 3, &picture);
-    if (result == ORL_OK)
-        result = orl_silhouette_difference(live->log, &camera->background, &params, &picture, &mask);
+    ORL_THEN(result, orl_silhouette_difference(live->log, &camera->background, &params, &picture, &mask));
     if (result == ORL_OK) {
         orl_silhouette_mark_edges(&mask);
         result = write_picture(live, camera, number, "masks", ".png", NULL, &mask);
     }
-    if (result == ORL_OK)
-        result = write_picture(live, camera, number, "images", "", path, NULL);
+    ORL_THEN(result, write_picture(live, camera, number, "images", "", path, NULL));
     orl_image_finish(&picture);
     orl_image_finish(&mask);
     return result;
@@ -182,10 +180,8 @@ static enum orl_result add_camera(struct live *live, const char *dir, size_t pho
         result = orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
                           "place, which --live needs; import the cameras with --background",
                           live->scene->dir, p->name);
-    if (result == ORL_OK)
-        result = orl_picture_read(live->log, path, 3, &picture);
-    if (result == ORL_OK)
-        result = orl_background_add(live->log, &camera->background, &picture);
+    ORL_THEN(result, orl_picture_read(live->log, path, 3, &picture));
+    ORL_THEN(result, orl_background_add(live->log, &camera->background, &picture));
     orl_image_finish(&picture);
     free(path);
     return result;
@@ -231,9 +227,7 @@ static enum orl_result open_cameras(struct live *live)
     }
     if (result == ORL_OK && pipes)
         result = orl_live_pipes_start(live->log, live->from, live->folders, count, &live->pipes);
-    if (result == ORL_OK)
-        result = orl_live_cameras_init(live->log, live->from, live->folders, count, pipes > 0,
-                                       &live->pictures);
+    ORL_THEN(result, orl_live_cameras_init(live->log, live->from, live->folders, count, pipes > 0, &live->pictures));
     return result;
 }
 
@@ -251,14 +245,12 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
     live->latency_ms = orl_array(log, LATENCIES, sizeof *live->latency_ms);
     live->dir = orl_format(log, "%s/oriel-live-XXXXXX", base && *base ? base : "/tmp");
     enum orl_result result = live->cameras && live->latency_ms && live->dir ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = add_cameras(live, dir);
+    ORL_THEN(result, add_cameras(live, dir));
     if (result == ORL_OK && !mkdtemp(live->dir))
         result = orl_fail(log, ORL_ERR_IO, "%s: %s", live->dir, strerror(errno));
     else if (result == ORL_OK)
         scene->time_steps_dir = live->dir;
-    if (result == ORL_OK)
-        result = open_cameras(live);
+    ORL_THEN(result, open_cameras(live));
     if (result == ORL_OK)
         live->has_thread = pthread_create(&live->thread, NULL, watch, live) == 0;
     if (result == ORL_OK && !live->has_thread)

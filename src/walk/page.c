@@ -330,8 +330,7 @@ enum orl_result orl_site_pack(struct site *site, const char *file)
     // The page finds the poster in its own table of files, so it needs no address for it.
     fill_template(values, VALUES, &page);
     enum orl_result result = files.result != ORL_OK ? files.result : page.result;
-    if (result == ORL_OK)
-        result = orl_file_write(site->log, file, page.bytes.data, page.bytes.size);
+    ORL_THEN(result, orl_file_write(site->log, file, page.bytes.data, page.bytes.size));
     site->report->bytes = site->report->first_bytes = page.bytes.size;
     finish_values(values);
     free(files.bytes.data);

@@ -103,16 +103,11 @@ static enum orl_result write_site(struct site *site)
 {
     json_t *points = NULL, *photos = NULL, *steps = NULL;
     enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
-    if (result == ORL_OK)
-        result = make_folders(site);
-    if (result == ORL_OK)
-        result = orl_site_page(site);
-    if (result == ORL_OK)
-        result = orl_site_scene_points(site, &points);
-    if (result == ORL_OK)
-        result = orl_site_photos(site, &photos);
-    if (result == ORL_OK)
-        result = orl_site_poster(site);
+    ORL_THEN(result, make_folders(site));
+    ORL_THEN(result, orl_site_page(site));
+    ORL_THEN(result, orl_site_scene_points(site, &points));
+    ORL_THEN(result, orl_site_photos(site, &photos));
+    ORL_THEN(result, orl_site_poster(site));
     if (result == ORL_OK && site->carves)
         result = orl_site_steps(site, &steps);
     if (result == ORL_OK) {
@@ -149,8 +144,7 @@ static enum orl_result make_renderer(struct site *site)
 static enum orl_result replace_site(const struct site *site, struct orl_new_dir *dir)
 {
     enum orl_result result = orl_site_list(site);
-    if (result == ORL_OK)
-        result = orl_site_keep(site, dir->out);
+    ORL_THEN(result, orl_site_keep(site, dir->out));
     return result == ORL_OK ? orl_new_dir_replace(site->log, dir) : result;
 }
 
@@ -166,17 +160,14 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
                         .report = report, .folder = ""};
     struct orl_new_dir dir;
     enum orl_result result = orl_new_dir_begin_over(log, params.out, &dir);
-    if (result == ORL_OK)
-        result = check_out(log, params.out, params.single_file);
-    if (result == ORL_OK)
-        result = orl_walk_settings_read(log, scene, &site.settings);
+    ORL_THEN(result, check_out(log, params.out, params.single_file));
+    ORL_THEN(result, orl_walk_settings_read(log, scene, &site.settings));
     if (result != ORL_OK)
         goto end;
     params.title = title = orl_walk_title(log, scene, asked->title, site.settings);
     site.dir = dir.path;
     result = title ? make_renderer(&site) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = write_site(&site);
+    ORL_THEN(result, write_site(&site));
     if (result == ORL_OK)
         report->bytes = site_bytes(&site);
     if (result == ORL_OK)

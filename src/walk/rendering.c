@@ -73,8 +73,7 @@ static enum orl_result read_path(struct run *run, const json_t *keyframes)
 {
     const struct walk_rendering *r = run->rendering;
     enum orl_result result = orl_json_write(r->log, run->keys, keyframes);
-    if (result == ORL_OK)
-        result = orl_path_read(r->log, r->scene, run->keys, &run->path);
+    ORL_THEN(result, orl_path_read(r->log, r->scene, run->keys, &run->path));
     if (result == ORL_OK && run->path.count > FRAMES_MAX)
         result = orl_fail(r->log, ORL_ERR_FORMAT, "%s: %zu frames", run->keys, run->path.count);
     for (size_t i = 0; result == ORL_OK && i < run->path.count; i++) {
@@ -107,10 +106,8 @@ enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering, c
     const char *format = orl_json_text(message, "format");
     enum orl_result result = orl_walk_tone_read(message, &tone) ? name_files(&run, format)
                                                                 : ORL_ERR_FORMAT;
-    if (result == ORL_OK)
-        result = read_path(&run, json_object_get(message, "render"));
-    if (result == ORL_OK)
-        result = write_frames(&run, format, &tone);
+    ORL_THEN(result, read_path(&run, json_object_get(message, "render")));
+    ORL_THEN(result, write_frames(&run, format, &tone));
     if (result == ORL_OK)
         rendering->report(rendering->priv, run.path.count, run.path.count, run.file);
     orl_path_finish(&run.path);

@@ -576,8 +576,7 @@ static void report_rendering(void *priv, size_t done, size_t total, const char *
         result = reply(server->renders_for,
                        json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
                                  "total", (json_int_t)total, "file", file));
-    if (result == ORL_OK)
-        result = serve_once(server, false);
+    ORL_THEN(result, serve_once(server, false));
     server->result = result;
 }
 
@@ -608,10 +607,8 @@ static void report_site(void *priv, const char *step, double done, double total,
     (void)detail;
     json_t *state = json_pack("{s:f, s:f}", "done", done, "total", total);
     enum orl_result result = server->result;
-    if (result == ORL_OK)
-        result = tell_site(server, state, false);
-    if (result == ORL_OK)
-        result = serve_once(server, false);
+    ORL_THEN(result, tell_site(server, state, false));
+    ORL_THEN(result, serve_once(server, false));
     server->result = result;
     json_decref(state);
 }
@@ -663,20 +660,13 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
     bool edits = is_local(params->host) || params->edits;
     enum orl_result result =
         params->live ? orl_live_start(log, scene, params->live, &server.live) : ORL_OK;
-    if (result == ORL_OK)
-        result = orl_content_init(log, scene, params->title, edits, params->choice, &server.content);
-    if (result == ORL_OK)
-        result = check_address(log, params->host);
-    if (result == ORL_OK)
-        result = make_token(&server);
-    if (result == ORL_OK)
-        result = orl_walk_warm_up(&server.walk, scene, &params->choice->params);
-    if (result == ORL_OK)
-        result = make_headers(&server);
-    if (result == ORL_OK)
-        result = listen_there(&server);
-    if (result == ORL_OK)
-        result = serve(&server);
+    ORL_THEN(result, orl_content_init(log, scene, params->title, edits, params->choice, &server.content));
+    ORL_THEN(result, check_address(log, params->host));
+    ORL_THEN(result, make_token(&server));
+    ORL_THEN(result, orl_walk_warm_up(&server.walk, scene, &params->choice->params));
+    ORL_THEN(result, make_headers(&server));
+    ORL_THEN(result, listen_there(&server));
+    ORL_THEN(result, serve(&server));
     if (server.context)
         lws_context_destroy(server.context);
     orl_live_stop(&server.live);

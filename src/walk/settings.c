@@ -179,8 +179,7 @@ enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct o
         result = *settings ? ORL_OK : ORL_ERR_MEMORY;
     } else if (path) {
         result = orl_json_read(log, path, settings);
-        if (result == ORL_OK)
-            result = orl_walk_settings_check(log, path, *settings);
+        ORL_THEN(result, orl_walk_settings_check(log, path, *settings));
     }
     if (result != ORL_OK) {
         json_decref(*settings);

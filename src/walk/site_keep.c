@@ -139,8 +139,7 @@ enum orl_result orl_site_keep(const struct site *site, const char *old)
     if (!orl_path_is_dir(old))
         return ORL_OK;
     result = read_list(&k);
-    if (result == ORL_OK)
-        result = keep(&k, "");
+    ORL_THEN(result, keep(&k, ""));
     orl_names_finish(&k.listed);
     return result;
 }

@@ -69,9 +69,7 @@ static enum orl_result write_pictures(struct site *site, size_t photo,
     char *path = orl_scene_photo_path(site->log, site->scene, photo);
     enum orl_result result = path ? orl_picture_read(site->log, path, 3, &image) : ORL_ERR_MEMORY;
     free(path);
-    if (result == ORL_OK)
-        result = write_smaller(site, &image, camera->width, camera->height,
-                               site->params->jpeg_quality, picture);
+    ORL_THEN(result, write_smaller(site, &image, camera->width, camera->height, site->params->jpeg_quality, picture));
     if (result == ORL_OK && !*site->folder) // the list of photographs shows the first time step
         result = write_thumb(site, &image, camera, thumb);
     orl_image_finish(&image);
@@ -118,15 +116,10 @@ static enum orl_result write_radiance(struct site *site, size_t photo,
     struct orl_frame frame = {0};
     struct orl_image coded = {0}, shown = {0};
     enum orl_result result = orl_renderer_draw(site->renderer, &view, &params, NULL, &frame);
-    if (result == ORL_OK)
-        result = encode_radiance(site->log, &site->range, &frame.color, &coded);
-    if (result == ORL_OK)
-        result = write_smaller(site, &coded, camera->width, camera->height, RADIANCE_QUALITY,
-                               picture);
-    if (result == ORL_OK)
-        result = orl_tone_srgb(site->log, &frame.color, &shown);
-    if (result == ORL_OK)
-        result = write_thumb(site, &shown, camera, thumb);
+    ORL_THEN(result, encode_radiance(site->log, &site->range, &frame.color, &coded));
+    ORL_THEN(result, write_smaller(site, &coded, camera->width, camera->height, RADIANCE_QUALITY, picture));
+    ORL_THEN(result, orl_tone_srgb(site->log, &frame.color, &shown));
+    ORL_THEN(result, write_thumb(site, &shown, camera, thumb));
     orl_image_finish(&coded);
     orl_image_finish(&shown);
     orl_frame_finish(&frame);
@@ -212,10 +205,8 @@ static enum orl_result write_depth(struct site *site, size_t photo, const struct
     struct orl_image depth = {0}, packed = {0};
     enum orl_result result = draw_depth(site, view, &depth);
     *nearest = result == ORL_OK ? nearest_depth(&depth) : 1;
-    if (result == ORL_OK)
-        result = put_occluders(site, photo, *nearest, &depth);
-    if (result == ORL_OK)
-        result = pack_depth(site->log, &depth, *nearest, &packed);
+    ORL_THEN(result, put_occluders(site, photo, *nearest, &depth));
+    ORL_THEN(result, pack_depth(site->log, &depth, *nearest, &packed));
     char *file = result == ORL_OK ? orl_site_path(site, path) : NULL;
     if (result == ORL_OK)
         result = file ? orl_png_write(site->log, file, &packed) : ORL_ERR_MEMORY;
@@ -246,8 +237,7 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
     enum orl_result result = site->params->radiance
                                  ? write_radiance(site, index, &c, picture, thumb)
                                  : write_pictures(site, index, &c, picture, thumb);
-    if (result == ORL_OK)
-        result = write_depth(site, index, &depth_view, depth, &nearest);
+    ORL_THEN(result, write_depth(site, index, &depth_view, depth, &nearest));
     json_t *depth_file = result == ORL_OK ? orl_site_file(site, depth) : NULL;
     if (result != ORL_OK || !depth_file)
         return result != ORL_OK ? result : ORL_ERR_IO;
@@ -283,8 +273,7 @@ enum orl_result orl_site_photos(struct site *site, json_t **out)
         json_t *photo = NULL;
         if (orl_progress_cancelled(site->params->progress))
             result = ORL_ERR_CANCELLED;
-        if (result == ORL_OK)
-            result = write_photo(site, i, count, &photo);
+        ORL_THEN(result, write_photo(site, i, count, &photo));
         if (result == ORL_OK && json_array_append_new(photos, photo) != 0)
             result = ORL_ERR_MEMORY;
         count += result == ORL_OK;
@@ -312,9 +301,7 @@ enum orl_result orl_site_poster(struct site *site)
     if (result != ORL_OK)
         return result;
     result = orl_tone_srgb(site->log, &frame.color, &srgb);
-    if (result == ORL_OK)
-        result = write_smaller(site, &srgb, POSTER_WIDTH, POSTER_HEIGHT, POSTER_QUALITY,
-                               "poster.jpg");
+    ORL_THEN(result, write_smaller(site, &srgb, POSTER_WIDTH, POSTER_HEIGHT, POSTER_QUALITY, "poster.jpg"));
     orl_image_finish(&srgb);
     orl_frame_finish(&frame);
     return result;

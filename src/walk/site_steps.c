@@ -104,15 +104,13 @@ static enum orl_result hull_points(const struct orl_log *log, const struct step 
     struct orl_mesh mesh = {0};
     enum orl_result result =
         orl_cones_mesh(log, step->silhouettes, step->masks, HULL_SIDE, 0, said_endless, &mesh);
-    if (result == ORL_OK)
-        result = orl_points_init(log, points, mesh.vertex_count);
+    ORL_THEN(result, orl_points_init(log, points, mesh.vertex_count));
     for (size_t i = 0; result == ORL_OK && i < mesh.vertex_count; i++) {
         memcpy(points->position[i], mesh.position[i], sizeof mesh.position[i]);
         memcpy(points->normal[i], mesh.normal[i], sizeof mesh.normal[i]);
         color_point(step, points, i);
     }
-    if (result == ORL_OK)
-        result = orl_points_set_radii(log, NULL, &radii, NULL, 0, points);
+    ORL_THEN(result, orl_points_set_radii(log, NULL, &radii, NULL, 0, points));
     orl_mesh_finish(&mesh);
     return result;
 }
@@ -224,10 +222,8 @@ enum orl_result orl_site_room(struct site *site, struct orl_points *walls)
     struct step step;
     const struct orl_scene *scene = site->scene;
     enum orl_result result = read_step(site->log, scene, &step);
-    if (result == ORL_OK)
-        result = hull_points(site->log, &step, NULL, &hull);
-    if (result == ORL_OK)
-        result = find_room(site, &hull);
+    ORL_THEN(result, hull_points(site->log, &step, NULL, &hull));
+    ORL_THEN(result, find_room(site, &hull));
     size_t each = step.count ? WALL_POINTS / step.count : 0;
     if (result == ORL_OK) // rows and columns of a picture are rounded up
         result = orl_points_init(site->log, walls, 2 * WALL_POINTS + step.count * 20000);
@@ -260,8 +256,7 @@ static enum orl_result write_step(struct site *site, bool *said_endless, json_t 
     struct step step;
     static const char *const parts[] = {"points", "photos", "depth"};
     enum orl_result result = read_step(site->log, site->scene, &step);
-    if (result == ORL_OK)
-        result = hull_points(site->log, &step, said_endless, &hull);
+    ORL_THEN(result, hull_points(site->log, &step, said_endless, &hull));
     finish_step(&step);
     bool first = json_array_size(steps) == 0; // whose photographs are the site's
     for (size_t i = 0; result == ORL_OK && i < (first ? 1 : ORL_COUNT(parts)); i++) {
@@ -269,8 +264,7 @@ static enum orl_result write_step(struct site *site, bool *said_endless, json_t 
         result = inner ? orl_dir_make(site->log, inner) : ORL_ERR_MEMORY;
         free(inner);
     }
-    if (result == ORL_OK)
-        result = orl_site_points(site, &hull, HULL_POINTS, &points);
+    ORL_THEN(result, orl_site_points(site, &hull, HULL_POINTS, &points));
     if (result == ORL_OK && !first)
         result = orl_site_photos(site, &photos);
     if (result == ORL_OK)
@@ -298,8 +292,7 @@ enum orl_result orl_site_steps(struct site *site, json_t **out)
             result = ORL_ERR_CANCELLED;
         if (result == ORL_OK && scene->frame_count)
             result = orl_scene_set_frame(site->log, scene, (int)t);
-        if (result == ORL_OK)
-            result = write_step(site, &said_endless, steps);
+        ORL_THEN(result, write_step(site, &said_endless, steps));
         orl_progress_report(site->params->progress, "time steps", (double)(t + 1), (double)count, NULL);
     }
     site->folder = "";

@@ -72,8 +72,7 @@ enum orl_result orl_site_table_make(struct orl_gpu *gpu, struct orl_scene *scene
     params.radiance = radiance;
     params.progress = progress;
     result = site ? orl_publish(gpu, scene, &params, &report) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = read_site(log, site, table);
+    ORL_THEN(result, read_site(log, site, table));
     if (orl_dir_remove(log, dir) != ORL_OK && result == ORL_OK)
         result = ORL_ERR_IO;
     if (result != ORL_OK)
