@@ -6,7 +6,7 @@
 #include "figure_scene.h"
 
 static struct orl_gpu *gpu;
-enum { SIDE = 96, PHOTOS = 3, TRIES = 2000 };
+enum { SIDE = 96, PHOTOS = 3, TRIES = 2000, FIRST_TRIES = 50 };
 
 // A red wall that green photographs show.
 static void setup_green(struct fixture *f)
@@ -24,6 +24,22 @@ static struct orl_frame draw_progressive(struct orl_renderer *renderer, struct o
     assert_int_equal(orl_renderer_draw_progressive(renderer, &view, params, progress, &frame),
                      ORL_OK);
     return frame;
+}
+
+// The first frame of a renderer, which is made here: one ahead of all files, whose reader may be the quicker.
+static struct orl_frame draw_first(const struct fixture *f, struct orl_view view, const struct orl_render_params *params,
+                                   struct orl_renderer **renderer)
+{
+    for (int i = 0;; i++) {
+        assert_true(i < FIRST_TRIES);
+        struct orl_progressive progress = {.seconds = 0};
+        assert_int_equal(orl_renderer_create(gpu, &f->scene, NULL, renderer), ORL_OK);
+        struct orl_frame frame = draw_progressive(*renderer, view, params, &progress);
+        if (progress.missing >= PHOTOS)
+            return frame;
+        orl_frame_finish(&frame);
+        orl_renderer_destroy(renderer);
+    }
 }
 
 // Draws until no photograph is missing.
@@ -57,11 +73,7 @@ static void test_from_points_to_photographs(const char *method)
     const struct orl_render_params *params = &orl_method_find(NULL, method)->params;
     struct orl_view view = look_from(0.1, 0, 0, SIDE, SIDE);
     setup_green(&f);
-    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
-    // Nothing has been asked for yet, so no file can have been read.
-    struct orl_progressive progress = {.seconds = 0};
-    struct orl_frame first = draw_progressive(renderer, view, params, &progress);
-    assert_int_equal(progress.missing, PHOTOS);
+    struct orl_frame first = draw_first(&f, view, params, &renderer);
     const float *color = color_at(&first, SIDE / 2, SIDE / 2);
     assert_float_equal(color[0], 1, 0.01f);
     assert_float_equal(color[1], 0, 0.01f);
@@ -98,10 +110,7 @@ static void test_silhouettes(const char *method)
     params.hull_side = 24;
     setup_figure(&f, PHOTOS, 64, 48);
     struct orl_view view = f.photos[0].view;
-    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
-    struct orl_progressive progress = {.seconds = 0};
-    struct orl_frame first = draw_progressive(renderer, view, &params, &progress);
-    assert_true(progress.missing >= PHOTOS);
+    struct orl_frame first = draw_first(&f, view, &params, &renderer);
     struct orl_frame last = draw_to_the_end(renderer, view, &params);
     struct orl_frame waited = draw(gpu, &f, view, &params, 0);
     assert_same(&last.color, &waited.color);
