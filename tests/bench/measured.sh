@@ -338,7 +338,7 @@ page_parts() {
 
 Held-out photographs by method `oriel`, whole pictures, with one rule left out: how much PSNR in dB and how many
 thousandths of SSIM that loses (below 0: gains), the mean over the scenes, how many crumbs of 10,000 pixels it adds, and
-the time of a frame as a share of that with the rule. [Options](../reference/options.md) says what each rule does.
+the processor time of a frame as a share of that with the rule. [Options](../reference/options.md) says what each rule does.
 END
     command_block "tests/bench/worth.sh oriel SCENES/..."
     run "$command"

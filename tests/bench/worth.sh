@@ -3,7 +3,7 @@
 #     tests/bench/worth.sh ORIEL SCENE...
 # Prints a table in Markdown:
 # what is lost without the rule, in dB of PSNR and thousandths of SSIM of whole pictures, the mean over
-# the scenes, crumbs added, and the time of a frame without it as a share. Needs jq.
+# the scenes, crumbs added, and the processor time of a frame without it as a share. Needs jq.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
 oriel=$1
@@ -13,14 +13,14 @@ without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignme
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# row CHANGE: one figure of each scene, tab-separated: PSNR, SSIM, crumbs, milliseconds.
+# row CHANGE: one figure of each scene, tab-separated: PSNR, SSIM, crumbs, milliseconds of the processor.
 row() {
     local scene
     for scene in "${scenes[@]}"; do
         "$oriel" eval "$scene" --method oriel ${1:+--set "$1"} --quiet --json - </dev/null |
             jq -c 'if type == "array" then .[0] else . end | .mean'
     done | jq -sc '{change: $change, psnr: map(.psnr_db), ssim: map(.ssim), crumbs: map(.crumbs),
-                    ms: map(.render_ms)}' --arg change "$1"
+                    ms: map(.cpu_ms)}' --arg change "$1"
 }
 
 scenes=("$@")
