@@ -17,6 +17,7 @@ layout(std430, binding = 3) writeonly buffer plane_costs {
 };
 
 const int AT_ONCE = 4; // planes for which the parameters of a photograph are loaded once
+const int ASKED = 4;   // photographs of a tile, at most: its worst ones say no more of the depth
 // Cost of photographs that differ, at most, and at which difference in square roots of light. It is
 // less than the cost of being seen past: photographs that show the sky or a black cloth agree at any
 // depth, and those that show different things at one depth do not say which depth is right.
@@ -120,7 +121,7 @@ void main()
                     ray / max(estimate * plane_share(float(first + n)), min_inverse),
                     opinions[n]);
             c++;
-            i = c < asked ? chosen[list + c] : -1;
+            i = c < min(asked, ASKED) ? chosen[list + c] : -1;
         } while (i >= 0);
         for (int n = 0; n < AT_ONCE && first + n < planes; n++)
             costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(float(first + n) / FAR, 1.0);
