@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/undistort.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,24 +32,28 @@ end:
 }
 
 // COLMAP makes all pictures as small as it is told, but leaves cameras whose distortion is exactly zero
-// as large as they were: these get the size of their pictures.
+// as large as they were: these get the size of their pictures, for which it rounds in a way of its own.
 static enum orl_result limit_cameras(const struct orl_job *job)
 {
     struct orl_colmap_model model = {0};
-    const double most = orl_prepare_max_size(job->params);
+    const int most = orl_prepare_max_size(job->params);
     char *dir = orl_job_path(job, WORK "/sparse");
-    size_t limited = 0;
+    bool limited = false;
     enum orl_result result = dir ? orl_colmap_read(job->log, dir, &model) : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < model.camera_count; i++) {
-        struct orl_colmap_camera *camera = &model.cameras[i];
-        const struct orl_camera *c = &camera->pinhole;
-        double scale = most / fmax(c->width, c->height);
-        if (!(scale < 1))
+    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
+        const struct orl_colmap_camera *large = orl_colmap_camera_by_id(&model, model.images[i].camera_id);
+        const struct orl_camera *c = &large->pinhole;
+        int width, height;
+        if (c->width <= most && c->height <= most)
             continue;
-        const struct orl_camera small = orl_camera_resized(c, (int)round(scale * c->width),
-                                                           (int)round(scale * c->height));
-        *camera = orl_colmap_pinhole(camera->id, &small);
-        limited++;
+        char *path = orl_job_path(job, WORK "/images/%s", model.images[i].name);
+        result = path ? orl_picture_size(job->log, path, &width, &height) : ORL_ERR_MEMORY;
+        free(path);
+        if (result == ORL_OK) {
+            const struct orl_camera small = orl_camera_resized(c, width, height);
+            model.cameras[large - model.cameras] = orl_colmap_pinhole(large->id, &small);
+            limited = true;
+        }
     }
     if (result == ORL_OK && limited)
         result = orl_colmap_write(job->log, dir, &model);
