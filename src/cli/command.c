@@ -51,24 +51,23 @@ int command_status(enum orl_result result)
 static enum orl_result run(const struct orl_log *log, struct call *call, size_t input_count)
 {
     const struct command *command = call->command;
-    struct terminal terminal;
+    struct terminal *terminal = call->terminal;
     if (input_count < command->inputs_min)
         return orl_fail(log, ORL_ERR_ARGUMENT, "usage: oriel %s %s", command->name,
                         command->usage);
     enum orl_result result = orl_arguments_check(log, command->name, command->rows(), call->options);
     if (result != ORL_OK)
         return result;
-    terminal_init(&terminal, call->common->verbose ? ORL_LOG_DEBUG : ORL_LOG_INFO, call->common->quiet);
-    call->terminal = &terminal;
-    call->log = &terminal.log;
-    call->progress = &terminal.progress;
+    terminal_init(terminal, call->common->verbose ? ORL_LOG_DEBUG : ORL_LOG_INFO, call->common->quiet);
+    call->log = &terminal->log;
+    call->progress = &terminal->progress;
     result = command->run(call);
     orl_renderer_destroy(&call->renderer);
     orl_gpu_destroy(&call->gpu);
     orl_scene_destroy(&call->scene);
     orl_path_finish(&call->path);
     free(call->skip);
-    terminal_finish(&terminal);
+    terminal_finish(terminal);
     return result;
 }
 
@@ -78,7 +77,9 @@ int command_main(const struct command *command, int argc, const char *const *arg
     struct common_options common = {COMMON_OPTIONS(ORL_OPTION_PRESET)};
     void *options = orl_array(&log, 1, command->size + 1);
     const char **inputs = orl_array(&log, command->inputs_max + 1, sizeof *inputs);
-    struct call call = {.command = command, .options = options, .common = &common, .inputs = inputs};
+    struct terminal terminal;
+    struct call call = {.command = command, .terminal = &terminal, .options = options, .common = &common,
+                        .inputs = inputs};
     size_t count;
     enum orl_result result = options && inputs ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
