@@ -66,6 +66,13 @@ enum orl_hull_use { ORL_HULL_USES(ORL_ENUMERATOR) };
     NAME(ORL_OCCLUDER_SEARCH_NONE, "none") NAME(ORL_OCCLUDER_SEARCH_FIND, "find")
 enum orl_occluder_search { ORL_OCCLUDER_SEARCHES(ORL_ENUMERATOR) };
 
+// How the response curve of a camera is found from points that were seen at several exposures.
+// polynomial: Oriel's own. debevec, robertson: OpenCV's, to compare with.
+#define ORL_RESPONSE_METHODS(NAME) \
+    NAME(ORL_RESPONSE_POLYNOMIAL, "polynomial") NAME(ORL_RESPONSE_DEBEVEC, "debevec") \
+    NAME(ORL_RESPONSE_ROBERTSON, "robertson")
+enum orl_response_method { ORL_RESPONSE_METHODS(ORL_ENUMERATOR) };
+
 // Which photographs that are named as doubtful are left out. blurred: much less sharp than most.
 // duplicates: same picture as another, re-encoded, or of a camera that stood still.
 #define ORL_LEAVE_OUTS(NAME) \
@@ -105,6 +112,10 @@ extern const char *const orl_quality_names[], *const orl_matching_names[],
     ROW(masks_dir, "masks", PATH("DIR"), "NAME.png or NAME.EXT.png; black is ignored") \
     ROW(exposures, "exposures", PATH("FILE"), \
         "exposures in place of EXIF's: lines NAME,TIME,APERTURE,ISO or NAME,EV") \
+    ROW(response, "response", \
+        CHOICE(orl_response_method, ORL_RESPONSE_METHODS, ORL_RESPONSE_POLYNOMIAL, "HOW"), \
+        "how response curves are found; debevec and robertson are OpenCV's, to compare with", \
+        "expose?response") \
     ROW(sharing, "camera-sharing", \
         CHOICE(orl_camera_sharing, ORL_CAMERA_SHARINGS, ORL_SHARING_AUTO, "HOW"), \
         "which photographs are of one camera; auto: by size and EXIF", \

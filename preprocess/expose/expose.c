@@ -260,7 +260,7 @@ static enum orl_result fit_camera(struct exposing *e, int camera)
     if (!source)
         goto end; // all photographs of this camera are held out
     struct orl_response *response = &e->responses[e->response_count];
-    result = orl_response_fit(e->job->log, &e->samples, photos, e->train, response, &fit);
+    result = orl_response_fit(e->job->log, e->job->params->response, &e->samples, photos, e->train, response, &fit);
     if (result != ORL_OK)
         goto end;
     if (e->last)

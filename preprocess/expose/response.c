@@ -33,8 +33,9 @@ static const double FLAT_MAX = 0.3, FLOOR_EV_MAX = 2.1;
 static const double SMOOTHNESS = 1e-6;
 static const double PULL = 1e-3;        // regularization of the terms: a solution always exists
 static const double OFFSET_SIGMA = 0.2; // of a photograph's log exposure from the known value
+static const double STRETCH_MAX = 0.03;
 static const double FIRM = 1e8;         // weight of equality constraints
-static const double MUST_GAIN = 0.97;   // greatest ratio of the curve's spread to that of sRGB
+static const double MUST_GAIN = 0.9;    // greatest ratio of the curve's spread to that of sRGB
 // The least rise of log exposure per 8-bit value, which keeps the curve monotone.
 static const double RISE_MIN = 1e-4;
 
@@ -315,26 +316,43 @@ static void add_smoothness(double *a, size_t n, double weight)
     }
 }
 
-// Constrains the offsets so that they neither shift nor stretch the known exposures: a stretch of
-// the exposures and of the curve's exponent together would fit as well. Photographs are weighted by
-// their samples (`share`, with mean 1); otherwise nearly black ones would compensate for a stretch
-// of the rest.
-static void add_offsets(const struct problem *p, double *a, size_t n)
+static double mean_ev(const struct problem *p)
 {
-    const double *share = p->share;
     double mean = 0, total = 0;
     for (size_t i = 0; i < p->photo_count; i++) {
-        mean += share[i] * p->photos[i].ev;
-        total += share[i];
+        mean += p->share[i] * p->photos[i].ev;
+        total += p->share[i];
     }
-    mean /= total;
+    return mean / total;
+}
+
+// How much longer the steps between exposures are by the offsets than known.
+static double stretch_of(const struct problem *p)
+{
+    double mean = mean_ev(p), along = 0, all = 0;
+    for (size_t i = 0; i < p->photo_count; i++) {
+        double ev = p->photos[i].ev - mean;
+        along += p->photos[i].use ? p->share[i] * ev * p->offset[i] : 0;
+        all += p->photos[i].use ? p->share[i] * ev * ev : 0;
+    }
+    return all > 0 ? along / all : 0;
+}
+
+// Constrains the offsets so that they neither shift nor, unless that is allowed, stretch the known
+// exposures: a stretch of the exposures and of the curve's exponent together would fit as well.
+// Photographs are weighted by their samples (`share`, with mean 1); otherwise nearly black ones would
+// compensate for a stretch of the rest.
+static void add_offsets(const struct problem *p, bool stretches, double *a, size_t n)
+{
+    const double *share = p->share;
+    double mean = mean_ev(p), firm = stretches ? 0 : 1;
     for (size_t i = 0; i < p->photo_count; i++) {
         a[(TERMS + i) * n + TERMS + i] += p->photos[i].use ? 1 / (OFFSET_SIGMA * OFFSET_SIGMA) : 1;
         for (size_t k = 0; k < p->photo_count; k++)
             if (p->photos[i].use && p->photos[k].use)
                 a[(TERMS + i) * n + TERMS + k] +=
                     FIRM * share[i] * share[k] *
-                    (1 + (p->photos[i].ev - mean) * (p->photos[k].ev - mean));
+                    (1 + firm * (p->photos[i].ev - mean) * (p->photos[k].ev - mean));
     }
 }
 
@@ -351,8 +369,11 @@ static void set_shares(struct problem *p)
         share[i] *= (double)p->photo_count / total;
 }
 
-// Solves once. Without `curve`, only the offsets are unknown, for sRGB.
-static bool step(struct problem *p, bool curve)
+// What is unknown besides the offsets: the curve; nothing, for sRGB; how much exposures are stretched.
+enum unknown { CURVE, SRGB, SRGB_STRETCHED };
+
+// Solves once.
+static bool step(struct problem *p, enum unknown unknown)
 {
     size_t n = TERMS + p->photo_count;
     double t[TERMS], *a = p->matrix, *b = p->unknown, information = 0;
@@ -364,9 +385,9 @@ static bool step(struct problem *p, bool curve)
         information += weight_of(p, i);
     add_smoothness(a, n, SMOOTHNESS * information);
     set_shares(p);
-    add_offsets(p, a, n);
+    add_offsets(p, unknown == SRGB_STRETCHED, a, n);
     for (size_t k = 0; k < TERMS; k++)
-        a[k * n + k] += curve ? PULL : FIRM * FIRM;
+        a[k * n + k] += unknown == CURVE ? PULL : FIRM * FIRM;
     if (!orl_cholesky_solve(a, b, n))
         return false;
     for (size_t v = 0; v < NODES; v++) {
@@ -397,13 +418,13 @@ static void finish_curve(const struct problem *p, float linear[256])
 }
 
 // Iteratively reweighted least squares. *spread_ev: the spread of the residuals.
-static bool iterate(struct problem *p, bool curve, double *spread_ev)
+static bool iterate(struct problem *p, enum unknown unknown, double *spread_ev)
 {
     reset_weights(p);
     set_residuals(p);
     for (int i = 0; i < ITERATIONS; i++) {
         reweigh(p, i >= ITERATIONS - TUKEY_ITERATIONS);
-        if (!step(p, curve))
+        if (!step(p, unknown))
             return false;
         set_residuals(p);
     }
@@ -413,7 +434,28 @@ static bool iterate(struct problem *p, bool curve, double *spread_ev)
     return true;
 }
 
-static enum orl_result fit_channel(const struct orl_log *log, struct problem *p, int channel,
+// The spread of the residuals by a curve that has been found in another way, in EV.
+static double judge_curve(struct problem *p, const float linear[256])
+{
+    for (size_t v = 1; v < NODES; v++)
+        p->off[v] = log(fmax((double)linear[v], 1e-9)) - p->srgb[v];
+    p->off[0] = p->off[1];
+    memset(p->offset, 0, p->photo_count * sizeof *p->offset);
+    reset_weights(p);
+    set_residuals(p);
+    return spread(p, false) / LN2;
+}
+
+// Fits sRGB. Shutter times are told as 1/60 where they are 1/64: a stretch of the exposures by so little
+// says nothing against sRGB.
+static bool fit_srgb(struct problem *p, double *spread_ev)
+{
+    return iterate(p, SRGB_STRETCHED, spread_ev) &&
+           (fabs(stretch_of(p)) <= STRETCH_MAX || iterate(p, SRGB, spread_ev));
+}
+
+// linear: in: the curve, unless it is to be found here.
+static enum orl_result fit_channel(const struct orl_log *log, struct problem *p, bool finds, int channel,
                                    float linear[256], struct orl_response_fit *fit)
 {
     p->channel = channel;
@@ -425,8 +467,10 @@ static enum orl_result fit_channel(const struct orl_log *log, struct problem *p,
         return ORL_OK;
     }
     double srgb = 0, found = 0;
-    if (!iterate(p, false, &srgb) || !iterate(p, true, &found))
+    if (!fit_srgb(p, &srgb) || (finds && !iterate(p, CURVE, &found)))
         return orl_fail(log, ORL_ERR_DATA, "the response curve has no solution");
+    if (!finds)
+        found = judge_curve(p, linear);
     fit->spread_srgb_ev += srgb / 3;
     fit->spread_ev += found / 3;
     finish_curve(p, linear);
@@ -460,7 +504,8 @@ static void set_logarithms(struct problem *p)
         p->srgb[v] = log((double)orl_srgb_decode((float)v / 255));
 }
 
-enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_samples *samples,
+enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_method method,
+                                 const struct orl_samples *samples,
                                  const struct orl_response_photo *photos, size_t photo_count,
                                  struct orl_response *response, struct orl_response_fit *fit)
 {
@@ -488,9 +533,15 @@ enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_sam
         p.light = block + 4 * count;
         set_logarithms(&p);
     }
+    bool finds = method == ORL_RESPONSE_POLYNOMIAL;
+    bool is_found = false;
+    if (result == ORL_OK && !finds)
+        result = orl_response_opencv(log, method, samples, photos, photo_count, response->linear, &is_found);
+    if (!finds && !is_found)
+        fit->outcome = ORL_RESPONSE_FEW_SAMPLES;
     for (int c = 0; result == ORL_OK && c < 3 && fit->outcome == ORL_RESPONSE_FOUND; c++)
-        result = fit_channel(log, &p, c, response->linear[c], fit);
-    if (fit->outcome == ORL_RESPONSE_FOUND && fit->spread_ev > MUST_GAIN * fit->spread_srgb_ev)
+        result = fit_channel(log, &p, finds, c, response->linear[c], fit);
+    if (finds && fit->outcome == ORL_RESPONSE_FOUND && fit->spread_ev > MUST_GAIN * fit->spread_srgb_ev)
         fit->outcome = ORL_RESPONSE_SRGB;
     if (result != ORL_OK || fit->outcome != ORL_RESPONSE_FOUND)
         set_srgb(response);

@@ -3,6 +3,7 @@
 #define ORL_PREPROCESS_RESPONSE_H
 
 #include "preprocess/expose/samples.h"
+#include "oriel/prepare_params.h"
 #include "oriel/scene.h"
 
 enum orl_response_outcome {
@@ -32,9 +33,20 @@ struct orl_response_fit {
 // with equal steps, which cannot show a ripple with the period of the step. Exposures may be wrong
 // in single photographs as long as they are right on average. With any outcome but
 // ORL_RESPONSE_FOUND the curve is sRGB.
-enum orl_result orl_response_fit(const struct orl_log *log, const struct orl_samples *samples,
+// With ORL_RESPONSE_DEBEVEC and _ROBERTSON the curve is OpenCV's, of points that are known at every
+// exposure. Vignetting is left in them, and so are outliers; exposures count as exact, and the
+// curve is taken even if sRGB explains the samples as well.
+enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_method method,
+                                 const struct orl_samples *samples,
                                  const struct orl_response_photo *photos, size_t photo_count,
                                  struct orl_response *response,
                                  struct orl_response_fit *fit) ORL_CHECK_RESULT;
+
+// OpenCV's curves by `method`, in any unit and not always rising. *found: enough points are known at every
+// exposure.
+enum orl_result orl_response_opencv(const struct orl_log *log, enum orl_response_method method,
+                                    const struct orl_samples *samples,
+                                    const struct orl_response_photo *photos, size_t photo_count,
+                                    float linear[3][256], bool *found) ORL_CHECK_RESULT;
 
 #endif

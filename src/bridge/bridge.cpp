@@ -191,6 +191,32 @@ enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_i
     });
 }
 
+enum orl_result orl_bridge_response(const struct orl_log *log, enum orl_calibration kind,
+                                    const struct orl_image *values, const double *exposures,
+                                    float linear[3][256])
+{
+    struct orl_image curve;
+    ORL_REQUIRE(log, values->type == ORL_PIXEL_U8 && values->channels == 3 && values->data);
+    enum orl_result result = orl_image_init(log, &curve, 1, 256, 3, ORL_PIXEL_F32);
+    if (result != ORL_OK)
+        return result;
+    result = run(log, values, &curve, [&](const cv::Mat &source, cv::Mat &target) {
+        std::vector<cv::Mat> images;
+        for (int y = 0; y < source.rows; y++)
+            images.push_back(source.row(y));
+        std::vector<float> times(exposures, exposures + source.rows);
+        if (kind == ORL_CALIBRATION_DEBEVEC)
+            cv::createCalibrateDebevec(source.cols)->process(images, target, times);
+        else
+            cv::createCalibrateRobertson(60)->process(images, target, times);
+    });
+    for (int v = 0; result == ORL_OK && v < 256; v++)
+        for (int c = 0; c < 3; c++)
+            linear[c][v] = curve.f32[3 * v + c];
+    orl_image_finish(&curve);
+    return result;
+}
+
 enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_image *image,
                                  const struct orl_image *map, struct orl_image *remapped)
 {

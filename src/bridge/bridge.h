@@ -34,6 +34,13 @@ enum orl_tonemap { ORL_TONEMAP_DRAGO, ORL_TONEMAP_MANTIUK };
 enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_image *image,
                                    enum orl_tonemap kind,
                                    struct orl_image *mapped) ORL_CHECK_RESULT;
+// A camera's response curve by OpenCV. values: U8 x3; each row is one exposure, each column one place of
+// the scene, all of which Debevec's matrix takes: some hundreds at most. exposures: of each row, > 0.
+// The curve is linear light by channel and value, in any unit, and need not rise everywhere.
+enum orl_calibration { ORL_CALIBRATION_DEBEVEC, ORL_CALIBRATION_ROBERTSON };
+enum orl_result orl_bridge_response(const struct orl_log *log, enum orl_calibration kind,
+                                    const struct orl_image *values, const double *exposures,
+                                    float linear[3][256]) ORL_CHECK_RESULT;
 // Resamples `image`. map: F32 x2, for each pixel of the result its position in `image`, in pixels
 // with centres at whole numbers. Bilinear; black outside.
 enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_image *image,

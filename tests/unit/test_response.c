@@ -6,13 +6,11 @@
 #include "core/order.h"
 #include "oriel/image.h"
 #include "io/picture.h"
-#include "opencv_response.h"
 #include "preprocess/expose/response.h"
 #include "test.h"
 
 enum {
     SIDE = 64,      // of the made-up photographs
-    FEW_SIDE = 16,  // of what OpenCV's Debevec gets: its matrix is dense
     PHOTOS_MAX = 16,
 };
 
@@ -114,39 +112,20 @@ static struct orl_samples samples_of(const struct stack *stack)
     return samples;
 }
 
-static void fit(const struct stack *stack, struct orl_response *response)
+static void fit(enum orl_response_method method, const struct stack *stack, struct orl_response *response)
 {
     struct orl_response_photo photos[PHOTOS_MAX] = {0};
     struct orl_response_fit found;
     struct orl_samples samples = samples_of(stack);
     for (int i = 0; i < stack->photos; i++)
         photos[i] = (struct orl_response_photo){.use = true, .ev = stack->ev[i]};
-    assert_int_equal(orl_response_fit(NULL, &samples, photos, (size_t)stack->photos, response,
+    assert_int_equal(orl_response_fit(NULL, method, &samples, photos, (size_t)stack->photos, response,
                                       &found), ORL_OK);
     assert_int_equal(found.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++)
         for (int v = 1; v < 256; v++)
             assert_true(response->linear[c][v] > response->linear[c][v - 1]);
     orl_samples_finish(&samples);
-}
-
-// OpenCV's answer, Debevec's from evenly spaced pixels.
-static void ask_opencv(bool robertson, const struct stack *stack, float curve[3][256])
-{
-    float times[PHOTOS_MAX];
-    struct stack few = {.photos = stack->photos, .side = robertson ? stack->side : FEW_SIDE};
-    size_t count = (size_t)few.side * (size_t)few.side;
-    few.pixels = calloc((size_t)few.photos * count, 3);
-    assert_non_null(few.pixels);
-    for (int i = 0; i < few.photos; i++) {
-        times[i] = (float)exp2(stack->ev[i]);
-        for (int at = 0; at < (int)count; at++)
-            memcpy(pixel(&few, i, at),
-                   pixel(stack, i, (int)((size_t)at * (size_t)(stack->side * stack->side) / count)),
-                   3);
-    }
-    assert_true(opencv_response(robertson, few.pixels, few.photos, few.side, times, curve));
-    free(few.pixels);
 }
 
 // RMS of `curve` from `truth` in [first, last], scaled to fit, by the truth's largest.
@@ -166,13 +145,12 @@ static void channels_clip_alone(void **state)
 {
     (void)state;
     struct stack stack = make_stack(5, 2, 0);
-    struct orl_response response;
+    struct orl_response response, debevec, robertson;
     double truth[256];
-    float debevec[3][256], robertson[3][256];
     make_truth(0, truth);
-    fit(&stack, &response);
-    ask_opencv(false, &stack, debevec);
-    ask_opencv(true, &stack, robertson);
+    fit(ORL_RESPONSE_POLYNOMIAL, &stack, &response);
+    fit(ORL_RESPONSE_DEBEVEC, &stack, &debevec);
+    fit(ORL_RESPONSE_ROBERTSON, &stack, &robertson);
     // OpenCV gives clipped values weight; the second time the ends are left out for its sake.
     const int first[] = {1, 16}, last[] = {254, 240};
     for (int k = 0; k < 2; k++) {
@@ -181,8 +159,8 @@ static void channels_clip_alone(void **state)
             double ours = rms(response.linear[c], truth, first[k], last[k]);
             assert_true(ours < 0.005);
             sum[0] += ours * ours;
-            sum[1] += pow(rms(debevec[c], truth, first[k], last[k]), 2);
-            sum[2] += pow(rms(robertson[c], truth, first[k], last[k]), 2);
+            sum[1] += pow(rms(debevec.linear[c], truth, first[k], last[k]), 2);
+            sum[2] += pow(rms(robertson.linear[c], truth, first[k], last[k]), 2);
         }
         print_message("%d to %d: RMS %.4f, OpenCV's Debevec %.4f, Robertson %.4f\n", first[k],
                       last[k], sqrt(sum[0] / 3), sqrt(sum[1] / 3), sqrt(sum[2] / 3));
@@ -205,7 +183,7 @@ static void a_floor_has_no_say(void **state)
     struct orl_response response;
     double truth[256];
     make_truth(BLACK, truth);
-    fit(&stack, &response);
+    fit(ORL_RESPONSE_POLYNOMIAL, &stack, &response);
     for (int c = 0; c < 3; c++) {
         double ours = rms(response.linear[c], truth, BLACK + 4, 254);
         if (!(ours < 0.003))
@@ -351,22 +329,21 @@ static void the_church_agrees_with_opencv(void **state)
         print_message("no memorial-exposures below ORL_DATASETS: skipped\n");
         skip();
     }
-    struct orl_response response;
-    float debevec[3][256], robertson[3][256];
+    struct orl_response response, debevec, robertson;
     double theirs[256];
-    fit(&stack, &response);
-    ask_opencv(false, &stack, debevec);
-    ask_opencv(true, &stack, robertson);
+    fit(ORL_RESPONSE_POLYNOMIAL, &stack, &response);
+    fit(ORL_RESPONSE_DEBEVEC, &stack, &debevec);
+    fit(ORL_RESPONSE_ROBERTSON, &stack, &robertson);
     double ratio = ratio_error(&stack, response.linear);
     print_message("ratio: %.3f EV, OpenCV's Debevec %.3f, Robertson %.3f\n", ratio,
-                  ratio_error(&stack, debevec), ratio_error(&stack, robertson));
+                  ratio_error(&stack, debevec.linear), ratio_error(&stack, robertson.linear));
     assert_true(ratio < 0.1);
     for (int c = 0; c < 3; c++) {
         for (int v = 0; v < 256; v++)
-            theirs[v] = (double)debevec[c][v];
+            theirs[v] = (double)debevec.linear[c][v];
         double from_debevec = rms(response.linear[c], theirs, 32, 224);
         for (int v = 0; v < 256; v++)
-            theirs[v] = (double)robertson[c][v];
+            theirs[v] = (double)robertson.linear[c][v];
         double from_robertson = rms(response.linear[c], theirs, 32, 224);
         print_message("channel %d: RMS %.4f from OpenCV's Debevec, %.4f from Robertson\n", c,
                       from_debevec, from_robertson);
