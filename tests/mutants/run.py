@@ -10,7 +10,9 @@ all shaders, which the test reads (ORIEL_TEST_SHADERS); one to a file of a publi
 that, on which the named tests of tests/web/test_page.py run in a browser (page/CLASS.TEST). Neither the
 source nor BUILD is touched.
 Named changes alone are tried, with --changed those of files that differ from COMMIT, and with
---minutes only as many as begin within that time: what is left is told, and is no failure.
+--minutes only as many as begin within that time: what is left is told, and is no failure. Their order
+is then that of a shuffle which depends on the commit that is checked out, so that runs at different
+commits begin with different changes.
 
 A change that no test notices fails the run, unless its entry says why none can ("survives"). So does
 an entry whose text is not in its file exactly once, and a test that fails without any change. --texts
@@ -20,6 +22,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import random
 import resource
 import shlex
 import shutil
@@ -33,7 +36,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 PAGE = "page/"  # of tests in a browser
 # Of a test. A change that makes it endless is noticed; a busy machine must not look like one.
-CPU_LIMIT_S, WAIT_S = 200, 3600
+CPU_LIMIT_S, WAIT_S = 100, 3600
 
 
 class Broken(Exception):
@@ -66,7 +69,7 @@ class Build:
             word = words.pop(0)
             if word in ("-o", "-c", "-MF", "-MT"):
                 words.pop(0)
-            elif word not in ("-MD", "-g"):
+            elif word not in ("-MD", "-g") and not word.startswith("-Werror"):  # may leave something unused
                 command.append(word)
         command += ["-I", os.path.dirname(path), "-c", changed, "-o", out]
         made = run(command, cwd=self.folder)
@@ -214,11 +217,17 @@ def judge(build, entries, minutes, jobs):
     return [f for f in found if f]
 
 
-def changed_files(commit):
-    names = run(["git", "-C", SOURCE, "diff", "--name-only", commit])
-    if names.returncode:
-        sys.exit(names.stdout)
-    return set(names.stdout.split("\n"))
+def git(*words):
+    said = run(["git", "-C", SOURCE, *words])
+    if said.returncode:
+        sys.exit(said.stdout)
+    return said.stdout
+
+
+def shuffled(entries):
+    entries = list(entries)
+    random.Random(git("rev-parse", "HEAD")).shuffle(entries)
+    return entries
 
 
 def write_table(path, found):
@@ -264,10 +273,12 @@ def main():
     with open(os.path.join(HERE, "list.json")) as file:
         entries = json.load(file)
     if asked.changed:
-        changed = changed_files(asked.changed)
+        changed = git("diff", "--name-only", asked.changed).split("\n")
         entries = [entry for entry in entries if entry["file"] in changed]
     if asked.names:
         entries = [entry for entry in entries if entry["name"] in asked.names]
+    if asked.minutes:
+        entries = shuffled(entries)
     if not entries:
         print("no change of the list concerns what is asked for")
         return 0
