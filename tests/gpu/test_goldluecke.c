@@ -209,6 +209,31 @@ static void colours_blend_by_the_weights(void **state)
     teardown(&f);
 }
 
+// Section 3: a silhouette's outermost pixels are half the subject's, so that each billboard leaves half
+// of what is behind it there: of black 1 / 2^n behind n of them. The disc's last pixel on its middle
+// row, seen as its photograph sees it.
+static void borders_of_silhouettes_are_half_there(void **state)
+{
+    (void)state;
+    enum { RADIUS = 12 };
+    static const char *const coarse[] = {"hull_side=8"};
+    struct fixture f;
+    setup_empty(&f, 4);
+    add_disc_photo(&f, look_around(0, 4, SIDE, 60), green, 0.5 * SIDE, 0.5 * SIDE, RADIUS);
+    add_disc_photo(&f, look_around(1.6, 4, SIDE, 60), blue, 0.5 * SIDE, 0.5 * SIDE, RADIUS);
+    struct orl_render_params params = params_of(coarse, 1);
+    struct orl_frame frame = draw(gpu, &f, look_around(0, 4, SIDE, 60), &params, 0);
+    const float *within = color_at(&frame, SIDE / 2 + RADIUS - 2, SIDE / 2);
+    double layers = -log2(1 - (double)within[3 + 1]);
+    print_message("%.2f billboards\n", layers);
+    assert_float_equal(within[1], 1, 1e-3);
+    assert_true(layers > 0.9 && layers < 6.1);
+    assert_float_equal(layers, round(layers), 0.05);
+    assert_float_equal(within[6 + 1], 0, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // A ball stands behind another one for the red photograph, which is the nearest by its axis. Beside
 // it, from where both are seen, the far one has the colours of the others alone.
 static void hidden_voxels_are_painted_by_others(void **state)
@@ -495,6 +520,7 @@ int main(void)
         cmocka_unit_test(points_fill_voxels),
         cmocka_unit_test(the_nearest_two_weigh_by_their_arcs),
         cmocka_unit_test(colours_blend_by_the_weights),
+        cmocka_unit_test(borders_of_silhouettes_are_half_there),
         cmocka_unit_test(hidden_voxels_are_painted_by_others),
         cmocka_unit_test(voxels_seen_in_part_are_painted_by_others),
         cmocka_unit_test(clipped_photographs_give_way),

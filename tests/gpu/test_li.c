@@ -286,14 +286,56 @@ static void the_room_has_its_pictures(void **state)
     teardown(&f);
 }
 
-// Seen from aside, where no photograph shows all of the ball nor all of the walls: neither takes
-// colours of the other.
-static void unseen_places_take_colors_of_their_own(void **state)
+// Where the room's box is not known, its pictures are on a sphere around the scene.
+static void a_sphere_stands_in_for_the_room(void **state)
 {
     (void)state;
     struct fixture f;
     setup_room(&f, 2);
+    f.scene.room.known = false;
     struct orl_render_params params = params_of(NULL, 0);
+    struct orl_frame frame = draw(gpu, &f, f.photos[0].view, &params, 0);
+    const float *wall = color_at(&frame, 8, 8);
+    assert_float_equal(wall[0] + wall[1], 1, 0.01);
+    assert_true(wall[0] > 0.4f);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// What completes the walls paints nothing that a photograph shows: its edge between columns 20 and 21,
+// which are one pixel of the next level, stays sharp.
+static void edges_on_walls_stay_sharp(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_image background;
+    setup_room(&f, 2);
+    assert_int_equal(orl_image_init(NULL, &background, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        background.u8[3 * i] = i % SIDE < 21 ? 255 : 0;
+    char *path = orl_scene_background_path(NULL, &f.scene, 0);
+    assert_int_equal(orl_png_write(NULL, path, &background), ORL_OK);
+    struct orl_render_params params = params_of(NULL, 0);
+    struct orl_frame frame = draw(gpu, &f, f.photos[0].view, &params, 0);
+    assert_true(color_at(&frame, 18, 8)[0] > 0.4f);
+    assert_float_equal(color_at(&frame, 20, 8)[0], color_at(&frame, 18, 8)[0], 0.01);
+    assert_float_equal(color_at(&frame, 21, 8)[0], 0, 0.01);
+    orl_frame_finish(&frame);
+    orl_image_finish(&background);
+    free(path);
+    teardown(&f);
+}
+
+// Seen from aside, where no photograph shows all of the ball nor all of the walls: neither takes
+// colours of the other.
+static void check_unseen_places(const char *method)
+{
+    struct fixture f;
+    setup_room(&f, 2);
+    struct orl_render_params params = orl_method_find(NULL, method)->params;
+    params.proxy = &orl_proxy_hull;
+    params.fill = ORL_FILL_ROOM;
+    params.antialias = ORL_ANTIALIAS_OFF;
     struct orl_view view = look_around(2.2, 4, SIDE, 60);
     struct orl_frame frame = draw(gpu, &f, view, &params, 0);
     int ball = 0, unseen = 0, walls = 0;
@@ -310,6 +352,13 @@ static void unseen_places_take_colors_of_their_own(void **state)
     assert_true(unseen > ball / 10 && unseen < ball && walls > SIDE * SIDE / 2);
     orl_frame_finish(&frame);
     teardown(&f);
+}
+
+static void unseen_places_take_colors_of_their_own(void **state)
+{
+    (void)state;
+    check_unseen_places("li");
+    check_unseen_places("oriel");
 }
 
 // Without pictures of the empty place the photographs are projected, but not their subject.
@@ -426,6 +475,8 @@ int main(void)
         cmocka_unit_test(fat_outlines_stop_leaks),
         cmocka_unit_test(what_has_no_depth_is_lit),
         cmocka_unit_test(the_room_has_its_pictures),
+        cmocka_unit_test(a_sphere_stands_in_for_the_room),
+        cmocka_unit_test(edges_on_walls_stay_sharp),
         cmocka_unit_test(unseen_places_take_colors_of_their_own),
         cmocka_unit_test(the_subject_is_not_on_the_walls),
         cmocka_unit_test(turns_change_nothing),

@@ -98,6 +98,44 @@ static void few_photographs_paint_too(void **state)
     teardown(&f);
 }
 
+// The weight of each of more than four that tie, 1 - p / p5, is 0.
+static void photographs_that_tie_paint(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    for (int i = 0; i < 6; i++)
+        add_photo(&f, look_from(0.5, 0, 0, SIDE, 40), green);
+    struct orl_render_params params = orl_method_find(NULL, "ulr")->params;
+    params.fill = ORL_FILL_NONE;
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, 40), &params, 0);
+    assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Pixel (44, 24) sees nothing, and is guessed to be at (6.8, 0, 4), beside the wall. From (-5.4, 0, 0)
+// the plate, at (0.7, 0, 2), hides that place.
+static void guesses_take_nothing_of_what_hides_them(void **state)
+{
+    (void)state;
+    static const char *const visibility[] = {"hard", "shadow", "none"};
+    struct fixture f;
+    setup(&f, true);
+    add_photo(&f, look_from(3, 0, 0, SIDE, 20), red);
+    add_photo(&f, look_from(-5.4, 0, 0, 4 * SIDE, 28), green);
+    for (size_t i = 0; i < ORL_COUNT(visibility); i++) {
+        struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
+        snprintf(params.visibility, sizeof params.visibility, "%s", visibility[i]);
+        snprintf(params.weight, sizeof params.weight, "equal");
+        params.fill = ORL_FILL_DEPTH;
+        struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, 12), &params, 0);
+        assert_float_equal(color_at(&frame, 44, 24)[1], strcmp(visibility[i], "none") ? 0 : 0.5, 0.01);
+        orl_frame_finish(&frame);
+    }
+    teardown(&f);
+}
+
 // Photographs that are on the device one at a time give the same bits as all at once.
 static void turns_change_nothing(void **state)
 {
@@ -312,6 +350,8 @@ int main(void)
         cmocka_unit_test(the_best_four_fade_by_the_fifth),
         cmocka_unit_test(farther_photographs_count_less),
         cmocka_unit_test(few_photographs_paint_too),
+        cmocka_unit_test(photographs_that_tie_paint),
+        cmocka_unit_test(guesses_take_nothing_of_what_hides_them),
         cmocka_unit_test(turns_change_nothing),
         cmocka_unit_test(both_sides_have_one_penalty),
         cmocka_unit_test(weights_are_those_of_their_formulas),

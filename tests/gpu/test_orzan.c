@@ -134,11 +134,12 @@ static void the_nearest_fade_by_the_next(void **state)
     teardown(&f);
 }
 
-// A photograph from behind the wall paints only where nobody asks which way the surface faces.
+// A photograph from behind the wall paints only where nobody asks which way the surface faces: with
+// equal weights, too, while the weights of the methods themselves are 0 there.
 static void what_faces_away_is_not_seen(void **state)
 {
     (void)state;
-    static const char *const blind[] = {"visibility=none", "weight=equal"};
+    static const char *const blind[] = {"weight=equal", "visibility=none"};
     struct fixture f;
     setup(&f, false);
     add_photo(&f, look_from(0.1, 0, 0, SIDE, 40), red);
@@ -147,8 +148,8 @@ static void what_faces_away_is_not_seen(void **state)
                                               .t = {0, 0, 8}};
     add_photo(&f, behind, green);
     static const char *const methods[] = {"orzan-surface", "orzan-shadow"};
-    for (size_t m = 0; m < ORL_COUNT(methods); m++) {
-        struct orl_frame facing = draw_with(&f, methods[m], NULL, 0);
+    for (size_t m = 0; m < 2 * ORL_COUNT(methods); m++) {
+        struct orl_frame facing = draw_with(&f, methods[m / 2], blind, m % 2);
         assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[1], 0, 1e-6);
         assert_float_equal(color_at(&facing, MIDDLE, MIDDLE)[0], 1, 1e-4);
         orl_frame_finish(&facing);

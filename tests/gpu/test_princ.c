@@ -219,6 +219,48 @@ static void every_direction_gets_an_extra(void **state)
     teardown(&f);
 }
 
+// Looks from `distance` at the wall's middle, `degrees` aside, as a normal turned by as much looks back.
+static struct orl_view aside_by(double degrees, double distance, int side, double focal)
+{
+    double c = cos(degrees * 3.141592653589793 / 180), s = sin(degrees * 3.141592653589793 / 180);
+    struct orl_view view = look_from(0, 0, 0, side, focal);
+    view.cam_from_world = (struct orl_pose){.r = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}},
+                                            .t = {-4 * s, 0, distance - 4 * c}};
+    return view;
+}
+
+// 2.3.2: an extra photograph for each mean of a cluster of normals. They turn from -40 degrees on the
+// left to 40 on the right, so that the three means lie at about -27, 0 and 27. Photographs that look
+// at the outermost normals, between the means or from farther aside are not taken.
+static void extras_look_at_the_means_of_clusters(void **state)
+{
+    (void)state;
+    static const char *const one[] = {"nearest=1", "fill=none", "combine=mean"}; // shows all that are taken
+    static const double means[] = {-27, 0, 27}, others[] = {-60, -50, -40, -14, 14, 40, 50, 60};
+    enum { TINY = 4 }; // pixels of a photograph that shows the middle alone
+    struct fixture f;
+    setup(&f, false);
+    for (size_t i = 0; i < f.scene.points.count; i++) {
+        double turn = (double)f.scene.points.position[i][0] / 3 * 40 * 3.141592653589793 / 180;
+        f.scene.points.normal[i][0] = (float)sin(turn);
+        f.scene.points.normal[i][2] = (float)-cos(turn);
+    }
+    add_photo(&f, aside_by(0, 4, TINY, 40), green);
+    for (size_t i = 0; i < ORL_COUNT(others); i++)
+        add_photo(&f, aside_by(others[i], 40, SIDE, 240), red);
+    for (size_t i = 0; i < ORL_COUNT(means); i++)
+        add_photo(&f, aside_by(means[i], 40, SIDE, 240), green);
+    struct orl_frame frame = draw_from(&f, look_from(0, 0, 0, SIDE, 32), one, 3);
+    int painted = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        painted += frame.coverage.f32[i] > 0;
+        assert_float_equal(frame.color.f32[3 * i], 0, 1e-3);
+    }
+    assert_true(painted > SIDE * SIDE / 2);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Equation 2.8: 4.04 for a frontal photograph, 3.04 at 70 degrees. By the mean of all, the shares of
 // two photographs in a pixel are their weights; both show the whole wall in as large a part.
 static void weights_are_those_of_the_equation(void **state)
@@ -297,6 +339,7 @@ int main(void)
         cmocka_unit_test(inside_the_axis_decides),
         cmocka_unit_test(a_photograph_ends_at_its_border),
         cmocka_unit_test(every_direction_gets_an_extra),
+        cmocka_unit_test(extras_look_at_the_means_of_clusters),
         cmocka_unit_test(weights_are_those_of_the_equation),
         cmocka_unit_test(depth_maps_take_no_memory),
     };
