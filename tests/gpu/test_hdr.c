@@ -284,6 +284,147 @@ static void photographs_that_tie_paint(void **state)
     teardown(&f);
 }
 
+static void brighter_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    for (int c = 0; c < 3; c++)
+        light[c] = 1.25f * WALL[c];
+}
+
+// The best photograph alone counts, less what the next one would weigh.
+static void the_best_few_leave_the_others_out(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0.2, 0), 0, wall_light);
+    add_photo(&f, look(0.3, 0), 0, brighter_light);
+    add_photo(&f, look(0.6, 0), 0, brighter_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    params.render.photos_per_pixel = 1;
+    struct orl_frame frame = draw(&f, &params);
+    assert_color(&frame, MIDDLE, WALL, 0.02);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// A sample that clips in part counts by the cube of the confidence in it.
+static void what_clips_in_part_counts_less(void **state)
+{
+    (void)state;
+    const struct orl_sensor sensor = {ORL_SENSOR_DEFAULTS};
+    const double ev = 0.42, peak = 1.25 * (double)WALL[0] * exp2(ev);
+    struct fixture f;
+    setup_wall(&f);
+    add_photo(&f, look(0.8, 0), 0, wall_light);
+    add_photo(&f, look(0.8, 0), ev, brighter_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    struct orl_frame frame = draw(&f, &params);
+    double cube = pow((double)orl_clip_trust(&sensor, (float)peak, (float)ev), 3);
+    double brighter = 0.25 * cube / (1 + cube);
+    assert_true(brighter > 0.03 && brighter < 0.07);
+    assert_float_equal(frame.color.f32[3 * MIDDLE] / WALL[0], 1 + brighter, 0.012);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+static uint8_t grey_value;
+
+static void grey_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    light[0] = light[1] = light[2] = orl_srgb_decode((float)grey_value / 255);
+}
+
+static void grey_light_of_45(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    light[0] = light[1] = light[2] = orl_srgb_decode(45 / 255.0f);
+}
+
+// The weight cos(theta) / delta of Airieau 2012 is one where a photograph is farther by a tenth of the
+// view's distance, here 4, so that it stands beside noise: two photographs straight behind the view,
+// farther by a twentieth and by a fifth.
+static void weights_are_in_units_of_the_distance(void **state)
+{
+    (void)state;
+    const struct orl_sensor sensor = {ORL_SENSOR_DEFAULTS};
+    struct fixture f;
+    struct orl_view near = look(0, 0), far = look(0, 0);
+    float light[3], other[3];
+    setup_wall(&f);
+    near.cam_from_world.t[2] = 0.2;
+    far.cam_from_world.t[2] = 0.8;
+    grey_value = 40;
+    add_photo(&f, near, 0, grey_light);
+    add_photo(&f, far, 0, grey_light_of_45);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "airieau");
+    snprintf(params.render.weight, sizeof params.render.weight, "airieau");
+    struct orl_frame frame = draw(&f, &params);
+    grey_light(NULL, 0, 0, light);
+    grey_light_of_45(NULL, 0, 0, other);
+    double noise = (double)orl_relative_variance(&sensor, light, true) / (sensor.model * sensor.model);
+    double first = 2 / (1 + 2 * noise), second = 0.5 / (1 + noise);
+    double expected = (first * (double)light[0] + second * (double)other[0]) / (first + second);
+    assert_float_equal(frame.color.f32[3 * MIDDLE], expected, 0.008 * expected);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// By the model of src/render/radiance.c, which the shaders repeat.
+static void confidence_is_that_of_the_noise(void **state)
+{
+    (void)state;
+    static const uint8_t values[] = {2, 12, 40};
+    const struct orl_sensor sensor = {ORL_SENSOR_DEFAULTS};
+    for (size_t i = 0; i < ORL_COUNT(values); i++) {
+        struct fixture f;
+        setup_wall(&f);
+        grey_value = values[i];
+        add_photo(&f, look(0, 0), 0, grey_light);
+        struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+        struct orl_frame frame = draw(&f, &params);
+        float light[3];
+        grey_light(NULL, 0, 0, light);
+        double model = sensor.model * sensor.model;
+        double expected = model / (model + (double)orl_relative_variance(&sensor, light, true));
+        assert_true(expected > 0.001 && expected < 0.8);
+        assert_float_equal(frame.confidence.f32[MIDDLE], expected, 0.03 * expected);
+        orl_frame_finish(&frame);
+        teardown(&f);
+    }
+}
+
+// A plate of 2 x 2 pixels between the points of a tile at which photographs are chosen for it: rows 34
+// and 38, columns 34 and 38. One photograph stands behind it, another one shows nothing else.
+static void what_is_small_in_a_tile_is_painted(void **state)
+{
+    (void)state;
+    enum { PLATE = 20, AT = 36 };
+    const double at = (AT + 0.5 - SIDE / 2) / 50 * 2; // in the world, at depth 2
+    struct fixture f;
+    setup(&f, GRID * GRID + PLATE * PLATE);
+    for (int i = 0; i < GRID * GRID; i++)
+        add_point(&f, (double[]){8.0 * (i % GRID + 0.5) / GRID - 4, 8.0 * (i / GRID + 0.5) / GRID - 4, 4},
+                  (double[]){0, 0, -1}, 12.0 / GRID);
+    for (int i = 0; i < PLATE * PLATE; i++)
+        add_point(&f, (double[]){at + 0.004 * (i % PLATE + 0.5 - PLATE / 2),
+                                 at + 0.004 * (i / PLATE + 0.5 - PLATE / 2), 2}, (double[]){0, 0, -1}, 0.006);
+    struct orl_view behind = look(0, 0), alone = look(at, at);
+    behind.cam_from_world.t[2] = -2.5;
+    alone.camera = (struct orl_camera){20, 20, 500, 500, 10, 10};
+    add_photo(&f, behind, 0, wall_light);
+    add_photo(&f, alone, 0, shade_light);
+    struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
+    params.render.min_support = 0;
+    struct orl_frame frame = draw(&f, &params);
+    assert_float_equal(frame.depth.f32[AT * SIDE + AT], 2, 0.01);
+    assert_color(&frame, AT * SIDE + AT, (float[]){WALL[0] / 64, WALL[1] / 64, WALL[2] / 64}, 0.1);
+    assert_color(&frame, AT * SIDE + AT + 8, WALL, 0.01);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 static void where_all_are_black_it_is_dark(void **state)
 {
     (void)state;
@@ -555,7 +696,7 @@ static void panoramas_show_what_is_there(void **state)
     assert_int_equal(orl_hdr_draw_panorama(hdr, &p, NULL, &frame), ORL_OK);
     static float errors[W * H];
     double border = 0, inner = 0;
-    int borders = 0;
+    int borders = 0, surfaces = 0, facing = 0;
     for (int i = 0; i < W * H; i++) {
         // The image's middle looks along +x, the world's y being down.
         double longitude = M_PI - 2 * M_PI * (i % W + 0.5) / W;
@@ -577,6 +718,16 @@ static void panoramas_show_what_is_there(void **state)
             far += (hit[k] - p.position[k]) * (hit[k] - p.position[k]);
         if (frame.depth.f32[i] > 0 && errors[i] < 0.05f)
             assert_float_equal(frame.depth.f32[i], sqrt(far), 0.06 * sqrt(far));
+        if (frame.depth.f32[i] > 0) { // a wall's normal, in the panorama's frame
+            int wall = fabs(hit[0]) > fabs(hit[1]) ? 0 : 1;
+            wall = fabs(hit[2]) > fabs(hit[wall]) ? 2 : wall;
+            const double *axes[3] = {right, down, forward};
+            double cosine = 0;
+            for (int k = 0; k < 3; k++)
+                cosine += (double)frame.normal.f32[3 * i + k] * axes[k][wall] * (hit[wall] > 0 ? -1 : 1);
+            surfaces++;
+            facing += cosine > 0.98;
+        }
         // Within 4 degrees of a border between two of the level faces.
         double off = fabs(remainder(longitude - M_PI / 4, M_PI / 2));
         bool near_border = off < 0.07 && fabs(latitude) < 0.5;
@@ -587,6 +738,7 @@ static void panoramas_show_what_is_there(void **state)
     qsort(errors, W * H, sizeof *errors, orl_order_floats);
     assert_true(errors[W * H / 2] < 0.03f);
     assert_true(errors[W * H * 95 / 100] < 0.15f);
+    assert_true(facing > 0.9 * surfaces && surfaces > W * H / 2);
     assert_true(border / borders < 1.5 * inner / (W * H - borders) + 0.01);
     orl_frame_finish(&frame);
     orl_hdr_destroy(&hdr);
@@ -636,6 +788,11 @@ int main(void)
         cmocka_unit_test(what_clips_takes_nothing_from_shade),
         cmocka_unit_test(several_that_clip_outvote_a_dark_one),
         cmocka_unit_test(photographs_that_tie_paint),
+        cmocka_unit_test(the_best_few_leave_the_others_out),
+        cmocka_unit_test(what_clips_in_part_counts_less),
+        cmocka_unit_test(weights_are_in_units_of_the_distance),
+        cmocka_unit_test(confidence_is_that_of_the_noise),
+        cmocka_unit_test(what_is_small_in_a_tile_is_painted),
         cmocka_unit_test(where_all_are_black_it_is_dark),
         cmocka_unit_test(noise_does_not_outvote_light),
         cmocka_unit_test(what_moved_does_not_ghost),
