@@ -29,41 +29,44 @@ static void add_true_photo(struct fixture *f, double eye)
     repaint_photo(f, &image);
 }
 
-// The plate's points reach `beyond` units past it on all sides.
-static struct orl_frame plate(double beyond, enum orl_antialias antialias)
+// Of pixels that are `coarser` than those of the photographs.
+static struct orl_frame plate(int coarser, enum orl_antialias antialias)
 {
     enum { WALL = 120, PLATE = 40 };
     struct fixture f;
     setup_empty(&f, 4);
     assert_int_equal(orl_points_init(NULL, &f.scene.points, WALL * WALL + PLATE * PLATE), ORL_OK);
     set_square(&f.scene.points, 0, WALL, 6, 0, 4, green);
-    set_square(&f.scene.points, WALL * WALL, PLATE, 0.4 + 2 * beyond, PLATE_X, 2, blue);
+    set_square(&f.scene.points, WALL * WALL, PLATE, 0.4, PLATE_X, 2, blue);
     static const double eyes[] = {-0.5, -0.2, 0.3, 0.9};
     for (size_t i = 0; i < ORL_COUNT(eyes); i++)
         add_true_photo(&f, eyes[i]);
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.antialias = antialias;
-    struct orl_frame frame = draw(gpu, &f, look_from(PLATE_X, 0, 0, SIDE, FOCAL), &params, 0);
+    struct orl_frame frame = draw(gpu, &f, look_from(PLATE_X, 0, 0, SIDE / coarser, FOCAL / coarser), &params, 0);
     teardown(&f);
     return frame;
 }
 
-static void steps_are_averaged_and_nothing_else(void **state)
+// Coarser pixels than the photographs' hold more of what lenses blur: neighbours count less, by the
+// square.
+static void check_steps(int coarser)
 {
-    (void)state;
-    struct orl_frame hard = plate(0, ORL_ANTIALIAS_OFF), soft = plate(0, ORL_ANTIALIAS_ON);
-    assert_memory_equal(soft.depth.f32, hard.depth.f32, sizeof(float) * SIDE * SIDE);
-    assert_memory_equal(soft.coverage.f32, hard.coverage.f32, sizeof(float) * SIDE * SIDE);
+    const int side = SIDE / coarser;
+    const float aside = 0.35f / (float)(coarser * coarser), all = 1 + 2 * aside;
+    struct orl_frame hard = plate(coarser, ORL_ANTIALIAS_OFF), soft = plate(coarser, ORL_ANTIALIAS_ON);
+    assert_memory_equal(soft.depth.f32, hard.depth.f32, sizeof(float) * (size_t)(side * side));
+    assert_memory_equal(soft.coverage.f32, hard.coverage.f32, sizeof(float) * (size_t)(side * side));
     int averaged = 0;
-    for (int y = 1; y < SIDE - 1; y++)
-        for (int x = 1; x < SIDE - 1; x++) {
+    for (int y = 1; y < side - 1; y++)
+        for (int x = 1; x < side - 1; x++) {
             bool step = false;
             float sum[3] = {0};
             for (int k = 0; k < 9; k++) {
                 int i = x + k % 3 - 1, j = y + k / 3 - 1;
-                float weight = (i == x ? 1 : 0.35f) * (j == y ? 1 : 0.35f) / (1.7f * 1.7f);
-                step |= (hard.depth.f32[j * SIDE + i] < 3) !=
-                        (hard.depth.f32[y * SIDE + x] < 3);
+                float weight = (i == x ? 1 : aside) * (j == y ? 1 : aside) / (all * all);
+                step |= (hard.depth.f32[j * side + i] < 3) !=
+                        (hard.depth.f32[y * side + x] < 3);
                 for (int c = 0; c < 3; c++)
                     sum[c] += weight * sqrtf(color_at(&hard, i, j)[c]);
             }
@@ -72,9 +75,49 @@ static void steps_are_averaged_and_nothing_else(void **state)
                                    step ? sum[c] * sum[c] : color_at(&hard, x, y)[c], 1e-3);
             averaged += step;
         }
-    assert_true(averaged > 4 * 2 * PLATE_HALF_PX);
+    assert_true(averaged > 4 * 2 * PLATE_HALF_PX / coarser);
     orl_frame_finish(&hard);
     orl_frame_finish(&soft);
+}
+
+static void steps_are_averaged_and_nothing_else(void **state)
+{
+    (void)state;
+    check_steps(1);
+    check_steps(2);
+}
+
+// However steep: its inverse depth has no second difference.
+static void planes_have_no_steps(void **state)
+{
+    (void)state;
+    enum { WALL = 160 };
+    struct fixture f;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, WALL * WALL), ORL_OK);
+    struct orl_points *points = &f.scene.points;
+    set_square(points, 0, WALL, 6, 0, 4, green);
+    for (size_t i = 0; i < WALL * WALL; i++) {
+        points->position[i][2] += 0.5f * points->position[i][0];
+        points->normal[i][0] = (float)sqrt(0.2);
+        points->normal[i][2] = (float)-sqrt(0.8);
+    }
+    add_true_photo(&f, 0);
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    struct orl_frame frames[2];
+    for (int i = 0; i < 2; i++) {
+        params.antialias = i ? ORL_ANTIALIAS_ON : ORL_ANTIALIAS_OFF;
+        frames[i] = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+    }
+    int averaged = 0;
+    for (int y = 8; y < SIDE - 8; y++)
+        for (int x = 8; x < SIDE - 8; x++)
+            averaged += memcmp(color_at(&frames[0], x, y), color_at(&frames[1], x, y), 3 * sizeof(float)) != 0;
+    print_message("%d pixels of a plane are averaged\n", averaged);
+    assert_true(averaged < SIDE * SIDE / 20); // where discs of points overlap unevenly
+    orl_frame_finish(&frames[0]);
+    orl_frame_finish(&frames[1]);
+    teardown(&f);
 }
 
 int main(void)
@@ -82,6 +125,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_are_averaged_and_nothing_else),
+        cmocka_unit_test(planes_have_no_steps),
     };
     int failed = cmocka_run_group_tests_name("edges", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

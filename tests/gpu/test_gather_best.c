@@ -110,6 +110,33 @@ static void a_small_move_changes_little(void **state)
     teardown(&f);
 }
 
+// A plate of 3 x 3 pixels beside the middle of a tile of 16. The red photograph stands behind the plate,
+// and the green one shows little more than it, and nothing of the tile's middle.
+static void what_is_small_in_a_tile_is_painted(void **state)
+{
+    (void)state;
+    enum { WALL = 120, PLATE = 12, AT = 18 };
+    struct fixture f;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, WALL * WALL + PLATE * PLATE), ORL_OK);
+    double x = (AT + 0.5 - 24) / 40 * 2;
+    set_square(&f.scene.points, 0, WALL, 6, 0, 4, red);
+    set_square(&f.scene.points, WALL * WALL, PLATE, 0.15, x, 2, blue);
+    add_photo(&f, look_from(0, 0, 2.5, 48, 20), red);
+    struct orl_view crop = look_from(0, 0, 0, 10, 40);
+    crop.camera.cx -= 40 * x / 2;
+    add_photo(&f, crop, green);
+    struct orl_render_params params = best();
+    params.min_support = 0; // which takes such plates for strays
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    assert_float_equal(frame.depth.f32[24 * 48 + AT], 2, 0.01);
+    assert_float_equal(color_at(&frame, AT, 24)[1], 1, 1e-3);
+    assert_float_equal(frame.coverage.f32[24 * 48 + AT], 1, 0);
+    assert_float_equal(color_at(&frame, 30, 24)[0], 1, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Two of three agree: the third, though no worse, loses weight.
 static void outliers_lose(void **state)
 {
@@ -317,6 +344,7 @@ int main(void)
         cmocka_unit_test(weights_fade_to_zero_at_the_first_left_out),
         cmocka_unit_test(hidden_photographs_do_not_paint),
         cmocka_unit_test(a_small_move_changes_little),
+        cmocka_unit_test(what_is_small_in_a_tile_is_painted),
         cmocka_unit_test(outliers_lose),
         cmocka_unit_test(many_photographs_leave_the_best),
         cmocka_unit_test(odd_sizes_lose_no_pixel),

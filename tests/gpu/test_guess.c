@@ -5,9 +5,10 @@
 #include "wall_scene.h"
 
 enum { SIDE = 128, INNER = 20 };
-static const double FOCAL = 128, OPENING = 1.1, WALL_Z = 4, BEHIND_Z = 8, BEFORE_Z = 3;
+static const double FOCAL = 128, WALL_Z = 4, BEHIND_Z = 8, BEFORE_Z = 3;
 
 static struct orl_gpu *gpu;
+static double opening = 1.1; // half its side
 
 // Squares of random brightness, half a unit wide, in 8 bits.
 static uint8_t squares(double x, double y)
@@ -22,7 +23,7 @@ static uint8_t squares(double x, double y)
 static void shade(double eye, double z, int i, int side, uint8_t rgb[3])
 {
     double x = (i % side + 0.5 - side / 2) / FOCAL, y = (i / side + 0.5 - side / 2) / FOCAL;
-    bool open = fabs(eye + WALL_Z * x) < OPENING && fabs(WALL_Z * y) < OPENING;
+    bool open = fabs(eye + WALL_Z * x) < opening && fabs(WALL_Z * y) < opening;
     uint8_t grey = squares(eye + z * x, z * y);
     memcpy(rgb, open ? (const uint8_t[3]){grey, grey, grey} : green, 3);
 }
@@ -47,7 +48,7 @@ static void make_wall(struct orl_points *points)
     set_square(points, 0, WALL, 6, 0, (float)WALL_Z, green);
     for (size_t i = 0; i < WALL * WALL; i++) {
         const float *at = points->position[i];
-        if (fabs((double)at[0]) < OPENING && fabs((double)at[1]) < OPENING)
+        if (fabs((double)at[0]) < opening && fabs((double)at[1]) < opening)
             continue;
         memcpy(points->position[kept], at, sizeof points->position[kept]);
         kept++; // everything else is the same for all
@@ -88,6 +89,17 @@ static void photographs_tell_the_depth_behind_an_opening(void **state)
     print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
     assert_true(rim > 0.1);
     assert_true(tried < 0.8 * rim);
+}
+
+// Surfaces all around a small opening know its depth better than photographs do.
+static void small_openings_keep_the_depth_of_their_rim(void **state)
+{
+    (void)state;
+    opening = 0.2;
+    double rim = error_with(0, BEHIND_Z), tried = error_with(16, BEHIND_Z);
+    opening = 1.1;
+    assert_true(rim > 0.01);
+    assert_float_equal(tried, rim, 0);
 }
 
 // The surfaces around an opening are its nearest background. Photographs that agree before it show
@@ -231,6 +243,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
+        cmocka_unit_test(small_openings_keep_the_depth_of_their_rim),
         cmocka_unit_test(nothing_comes_before_the_background),
         cmocka_unit_test(guesses_change_without_a_line),
         cmocka_unit_test(guesses_continue_slanting_surfaces),
