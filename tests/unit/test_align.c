@@ -6,7 +6,11 @@
 #include "preprocess/expose/align.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/job/exposure_list.h"
+#include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"
+#include "preprocess/expose/samples.h"
+#include "io/picture.h"
+#include "scene/meter.h"
 #include "test.h"
 
 enum { PHOTOS = 6, POINTS = 3000, SEEN = 4 };
@@ -402,6 +406,87 @@ static void response_stays_srgb_without_reason(void **state)
     orl_samples_finish(&samples);
 }
 
+// --- samples of photographs ---
+
+enum { SIDE = 64 };
+
+// A ramp of grey, white above and, below, an edge in the middle.
+static void write_ramp(const char *path)
+{
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            memset(&image.u8[3 * (SIDE * y + x)],
+                   y < 16 ? 255 : y < 48 ? 40 + 2 * x : x < SIDE / 2 ? 60 : 220, 3);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    orl_image_finish(&image);
+}
+
+// Of six points that both photographs look at, two are fit to compare them: the others lie where all is
+// white, on an edge, on a surface that faces away, and behind the last point.
+static void samples_show_what_photographs_have_in_common(void **state)
+{
+    (void)state;
+    static const float places[6][3] = {{0, 0, 4}, {0, -3, 4}, {0, 3, 4}, {-2, 0, 4}, {2, 0, 4}, {1.5f, 0, 3}};
+    const struct orl_sample_params params = {ORL_SAMPLE_DEFAULTS};
+    struct orl_sample_photo photos[2];
+    struct orl_points points;
+    struct orl_samples samples;
+    char *dir, *path;
+    assert_int_equal(test_file_make("ramp.png", &dir, &path), 0);
+    write_ramp(path);
+    for (int i = 0; i < 2; i++)
+        photos[i] = (struct orl_sample_photo){
+            path, {{SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2},
+                   {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {-0.2 * i, 0, 0}}}};
+    assert_int_equal(orl_points_init(NULL, &points, 6), ORL_OK);
+    for (int i = 0; i < 6; i++) {
+        memcpy(points.position[i], places[i], sizeof places[i]);
+        points.normal[i][2] = i == 3 ? 1 : -1;
+        points.radius[i] = i == 5 ? 0.4f : 0.05f;
+    }
+    assert_int_equal(orl_samples_take(NULL, NULL, photos, 2, &points, &params, &samples), ORL_OK);
+    assert_int_equal(samples.point_count, 2);
+    assert_int_equal(samples.count, 4);
+    // At columns 32 and 30.4 of the ramp, and at 48 and 45.9, in the middle row.
+    static const double expected[4] = {103, 99.8, 135, 130.7};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(samples.items[i].photo, i % 2);
+        assert_int_equal(samples.items[i].clipped, 0);
+        assert_float_equal(samples.items[i].value[1], expected[i], 1);
+    }
+    assert_float_equal(samples.items[0].r2, 0, 1e-6);
+    assert_float_equal(samples.items[2].r2, 0.125, 1e-6); // 16 pixels of 45.25
+    orl_samples_finish(&samples);
+    orl_points_finish(&points);
+    test_dir_remove(dir);
+    free(path);
+}
+
+// The light before the lens, which its borders darken.
+static void light_is_metered_without_vignetting(void **state)
+{
+    (void)state;
+    const struct orl_camera camera = {SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2};
+    const float gain[3] = {1, 1, 1}, vignette[3] = {-0.6f, 0, 0};
+    struct orl_image image;
+    char *dir, *path;
+    double light;
+    assert_int_equal(test_file_make("wall.png", &dir, &path), 0);
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        memset(&image.u8[3 * i],
+               (int)lrintf(255 * orl_srgb_encode(0.25f * orl_illumination(vignette, &camera, i % SIDE + 0.5,
+                                                                          (int)(i / SIDE) + 0.5))), 3);
+    assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
+    assert_int_equal(orl_photo_metered(NULL, path, &camera, gain, vignette, &light), ORL_OK);
+    assert_float_equal(light, -2, 0.02);
+    orl_image_finish(&image);
+    test_dir_remove(dir);
+    free(path);
+}
+
 // --- guesses ---
 
 // Views in a row, each sharing points with its neighbours.
@@ -430,6 +515,17 @@ static void guesses_follow_what_predicts(void **state)
             views[i].gain[c] = (float)exp2(0.3 * (i - 2.5));
     assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_NEIGHBOURS);
     assert_true(fabs(log2((double)views[6].gain[1])) < 0.05);
+    // By the square of what is in common over that of the distance.
+    double sum = 0, weights = 0;
+    views[6].eye[0] = 1.2;
+    for (int k = 0; k < 6; k++) {
+        shared[6 * 6 + k] = (uint32_t)(20 + 10 * k);
+        double weight = pow((21 + 10 * k) / 101.0 / (1.2 - k), 2);
+        sum += weight * 0.3 * (k - 2.5);
+        weights += weight;
+    }
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_NEIGHBOURS);
+    assert_float_equal(log2((double)views[6].gain[1]), sum / weights, 1e-5);
     // Without rhyme or reason: the reference.
     const float odd[6] = {1.5f, 0.6f, 1.6f, 0.5f, 1.4f, 0.7f};
     for (int i = 0; i < 6; i++)
@@ -471,6 +567,14 @@ static void guesses_follow_automatic_exposure(void **state)
     assert_float_equal(metering[1], mean, 1e-9);
     for (int c = 0; c < 3; c++)
         assert_float_equal(views[6].gain[c], exp2(0.1 * c), 1e-5);
+    for (int i = 0; i < 6; i++) // no camera evens out more than all
+        for (int c = 0; c < 3; c++)
+            views[i].gain[c] = (float)exp2(1.2 * (light[i] - mean));
+    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_METER);
+    assert_float_equal(metering[0], 1, 0);
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < 3; c++)
+            views[i].gain[c] = (float)exp2(0.8 * (light[i] - mean) + 0.1 * c);
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] *= (float)exp2(0.2 * (i - 2.5));
@@ -540,6 +644,8 @@ int main(void)
         cmocka_unit_test(curves_never_fall),
         cmocka_unit_test(response_of_srgb_is_srgb),
         cmocka_unit_test(response_stays_srgb_without_reason),
+        cmocka_unit_test(samples_show_what_photographs_have_in_common),
+        cmocka_unit_test(light_is_metered_without_vignetting),
         cmocka_unit_test(guesses_follow_what_predicts),
         cmocka_unit_test(guesses_follow_automatic_exposure),
         cmocka_unit_test(lists_are_read),

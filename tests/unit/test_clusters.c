@@ -83,6 +83,91 @@ static void neighbours_help_and_held_out_photographs_do_not(void **state)
     orl_colmap_finish(&model);
 }
 
+// Seven cameras at x = i, each of which sees the points at most 3 away, in four clusters as equal as can
+// be.
+static void make_seven(struct orl_colmap_model *model, struct orl_names *train)
+{
+    make_row(model, train);
+    orl_names_finish(train);
+    model->image_count = 7;
+    model->point_count = 7;
+    free(model->cameras);
+    model->cameras = calloc(2, sizeof *model->cameras);
+    model->camera_count = 2;
+    for (int i = 0; i < 2; i++) {
+        model->cameras[i].id = (uint32_t)i + 1;
+        model->cameras[i].pinhole = (struct orl_camera){100, 80, 90 * (3 * i + 1), 90, 50, 40};
+    }
+    for (int i = 0; i < CAMERAS; i++) {
+        struct orl_colmap_image *image = &model->images[i];
+        if (i >= 7) {
+            free(image->name);
+            free(image->points);
+            continue;
+        }
+        free(image->points);
+        image->points = calloc(7, sizeof *image->points);
+        image->point_count = 0;
+        for (int p = i - 3; p <= i + 3; p++)
+            if (p >= 0 && p < 7)
+                image->points[image->point_count++] = (uint32_t)p;
+        assert_int_equal(orl_names_add(NULL, train, image->name), ORL_OK);
+    }
+}
+
+static void clusters_are_equal_and_take_the_best_helpers(void **state)
+{
+    struct orl_colmap_model model;
+    struct orl_names train, names = {0};
+    struct orl_clusters clusters;
+    (void)state;
+    make_seven(&model, &train);
+    assert_int_equal(orl_clusters_make(NULL, &model, &train, 2, &clusters), ORL_OK);
+    static const int members[7] = {0, 1, 1, 2, 2, 3, 3};
+    // Both members of 1 see the points 0 to 4, which is most, and the first of equals wins.
+    static const int owners[7] = {1, 1, 1, 1, 1, 2, 2};
+    for (int i = 0; i < 7; i++) {
+        assert_int_equal(clusters.member[i], members[i]);
+        assert_int_equal(clusters.owner[i], owners[i]);
+    }
+    // Cameras 5 and 6 see both points of cluster 2, camera 2 one. There is one helper.
+    assert_int_equal(orl_clusters_photographs(NULL, &clusters, 2, &names), ORL_OK);
+    static const char *const expected[] = {"3.png", "4.png", "5.png"};
+    assert_int_equal(names.count, 3);
+    for (int i = 0; i < 3; i++)
+        assert_string_equal(names.items[i], expected[i]);
+    orl_names_finish(&names);
+    orl_clusters_finish(&clusters);
+    // Camera 2, with four times the focal length, shows point 5 better than 3 and 4 together.
+    model.images[2].camera_id = 2;
+    assert_int_equal(orl_clusters_make(NULL, &model, &train, 2, &clusters), ORL_OK);
+    assert_int_equal(clusters.owner[5], 1);
+    assert_int_equal(clusters.owner[6], 2);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
+    orl_colmap_finish(&model);
+}
+
+// Across the longest extent of where they stand, here along x.
+static void clusters_part_the_longest_extent(void **state)
+{
+    struct orl_colmap_model model;
+    struct orl_names train;
+    struct orl_clusters clusters;
+    (void)state;
+    make_seven(&model, &train);
+    for (int i = 0; i < 7; i++) {
+        model.images[i].cam_from_world.t[1] = 0.02 * (3 * i % 7);
+        model.images[i].cam_from_world.t[2] = 0.01 * (5 * i % 7);
+    }
+    assert_int_equal(orl_clusters_make(NULL, &model, &train, 4, &clusters), ORL_OK);
+    for (int i = 0; i < 7; i++)
+        assert_int_equal(clusters.member[i], i >= 3);
+    orl_clusters_finish(&clusters);
+    orl_names_finish(&train);
+    orl_colmap_finish(&model);
+}
+
 static void points_are_kept_once(void **state)
 {
     struct orl_colmap_model model;
@@ -213,6 +298,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_photograph_and_point_has_one_cluster),
         cmocka_unit_test(neighbours_help_and_held_out_photographs_do_not),
+        cmocka_unit_test(clusters_are_equal_and_take_the_best_helpers),
+        cmocka_unit_test(clusters_part_the_longest_extent),
         cmocka_unit_test(points_are_kept_once),
         cmocka_unit_test(clusters_follow_the_memory),
         cmocka_unit_test(a_run_that_goes_on_keeps_its_clusters),

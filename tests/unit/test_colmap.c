@@ -167,6 +167,46 @@ static void reads_text(void **state)
     test_dir_remove(dir);
 }
 
+// Written, a model is the same, its pixels are projections, and its tracks name an image and the
+// observation's number in it.
+static void writes_what_it_reads(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make();
+    char path[4096];
+    struct model_files f = sample();
+    struct orl_colmap_model m;
+    uint8_t *data;
+    size_t size;
+    save_model(dir, &f);
+    assert_int_equal(orl_colmap_read(NULL, dir, &m), ORL_OK);
+    m.points[2].position[2] = 0.5; // point 30, at (1, 2, 0.5): behind the cameras at z = 1
+    assert_int_equal(orl_colmap_write(NULL, dir, &m), ORL_OK);
+    orl_colmap_finish(&m);
+    assert_int_equal(orl_colmap_read(NULL, dir, &m), ORL_OK);
+    assert_float_equal(m.images[0].cam_from_world.t[0], 0.5, 1e-12);
+    assert_int_equal(m.images[0].points[1], 2);
+    orl_colmap_finish(&m);
+    // a.jpg begins behind a count: its id, quaternion, place, camera and name take 70 bytes. It sees
+    // point 20 at (9, 2, 3), from (-0.5, 0, 1), as r = (4.75, 1), by SIMPLE_RADIAL.
+    double pixel[2], radial = 1 - 0.1 * (4.75 * 4.75 + 1);
+    snprintf(path, sizeof path, "%s/images.bin", dir);
+    assert_int_equal(orl_file_read(NULL, path, 4096, &data, &size), ORL_OK);
+    memcpy(pixel, data + 8 + 70 + 8, sizeof pixel);
+    assert_float_equal(pixel[0], 500 * 4.75 * radial + 320.5, 1e-6);
+    assert_float_equal(pixel[1], 500 * radial + 240.5, 1e-6);
+    memcpy(pixel, data + 8 + 70 + 8 + 24, sizeof pixel);
+    assert_true(pixel[0] == 0 && pixel[1] == 0);
+    free(data);
+    // Point 30, the last, has a track of two: each image's second observation.
+    static const uint32_t track[4] = {3, 1, 4, 1};
+    snprintf(path, sizeof path, "%s/points3D.bin", dir);
+    assert_int_equal(orl_file_read(NULL, path, 4096, &data, &size), ORL_OK);
+    assert_memory_equal(data + size - sizeof track, track, sizeof track);
+    free(data);
+    test_dir_remove(dir);
+}
+
 static void refuses_bad_text(void **state)
 {
     (void)state;
@@ -418,6 +458,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_binary),
         cmocka_unit_test(reads_text),
+        cmocka_unit_test(writes_what_it_reads),
         cmocka_unit_test(refuses_bad_text),
         cmocka_unit_test(refuses_truncated_binary),
         cmocka_unit_test(refuses_huge_counts),

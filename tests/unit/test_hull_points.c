@@ -208,6 +208,11 @@ static void points_that_silhouettes_exclude_make_no_hull(void **state)
     begin(f, &hull);
     assert_true(hull.outside_share > 0.99);
     orl_hull_points_finish(&hull);
+    memset(f->points.photographs, 1, before);
+    begin(f, &hull);
+    assert_true(hull.outside_share < 0.01); // on which no second photograph agrees
+    orl_hull_points_finish(&hull);
+    memset(f->points.photographs, 2, before);
     assert_int_equal(close_points(f), before);
     assert_int_equal(f->points.count, before);
 }

@@ -59,6 +59,12 @@ static void groups_exposures(void **state)
     assert_float_equal(e[3].ev, 0, 0);
     assert_false(e[3].known);
     assert_float_equal(e[6].ev, 11.05, 1e-12);
+    // As far apart as a step: two series. The median is that of the lower one.
+    struct orl_exposure two[2] = {{.known = true, .ev = ORL_EXPOSURE_STEP_EV}, {.known = true}};
+    assert_int_equal(orl_exposures_group(NULL, two, 2, ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
+    assert_int_equal(series, 2);
+    assert_float_equal(two[0].ev, ORL_EXPOSURE_STEP_EV, 0);
+    assert_float_equal(two[1].ev, 0, 0);
     struct orl_exposure none[2] = {{0}, {.known = true, .test = true, .ev = 5}};
     assert_int_equal(orl_exposures_group(NULL, none, 2, ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
     assert_int_equal(series, 1);

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include "core/order.h"
+#include "scene/alike_points.h"
 #include "scene/nearest_points.h"
 #include "scene/radius_limits.h"
 #include "test.h"
@@ -41,6 +42,24 @@ static void agrees_with_brute_force(void **state)
         qsort(all, COUNT, sizeof *all, orl_order_doubles); // the point itself is all[0]
         assert_float_equal(points.radius[i], 1.5 * all[K], 1e-5);
     }
+    orl_points_finish(&points);
+}
+
+static void of_a_heap_a_few_are_searched(void **state)
+{
+    (void)state;
+    static const int kept[5] = {0, 1, 2, 3, 9}; // three at the origin, and the two others
+    struct orl_points points;
+    struct few_alike few;
+    assert_int_equal(orl_points_init(NULL, &points, 10), ORL_OK);
+    points.position[3][1] = points.position[9][2] = 1;
+    assert_int_equal(orl_points_few_alike(NULL, &points, 3, &few), ORL_OK);
+    assert_int_equal(few.count, 5);
+    for (int i = 0; i < 5; i++) {
+        assert_int_equal(orl_few_alike_point(&few, i), kept[i]);
+        assert_memory_equal(few.position[i], points.position[kept[i]], sizeof few.position[i]);
+    }
+    orl_few_alike_finish(&few);
     orl_points_finish(&points);
 }
 
@@ -365,6 +384,7 @@ static void stops_when_cancelled(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_a_heap_a_few_are_searched),
         cmocka_unit_test(agrees_with_brute_force),
         cmocka_unit_test(a_heap_changes_no_other_radius),
         cmocka_unit_test(identical_points_take_their_number),

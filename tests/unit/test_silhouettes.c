@@ -155,6 +155,28 @@ static void masks_that_leave_the_room_in_are_no_silhouettes(void **state)
     assert_int_equal(count_found(f), 0);
 }
 
+// A strip along one side, which is a third of the border, is no subject that photographs go around.
+static void masks_that_leave_the_picture_are_no_silhouettes(void **state)
+{
+    struct fixture *f = *state;
+    struct orl_image mask;
+    char path[8192];
+    write_all(f, 230);
+    f->params.masks_dir = "masks";
+    assert_int_equal(orl_image_init(NULL, &mask, SIDE, SIDE, 1, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        mask.u8[i] = i % SIDE < SIDE / 4 || (i % SIDE < 44 && i / SIDE > 20 && i / SIDE < 44) ? 255 : 0;
+    for (int i = 0; i < PHOTOS; i++) {
+        snprintf(path, sizeof path, "%s/masks/%s.png", f->dir, f->names[i]);
+        assert_int_equal(orl_png_write(NULL, path, &mask), ORL_OK);
+    }
+    struct orl_silhouettes found;
+    assert_int_equal(orl_silhouettes_find(&f->job, &f->model, &f->train, &f->points, &found), ORL_OK);
+    assert_int_equal(found.count, 0);
+    orl_silhouettes_finish(&found);
+    orl_image_finish(&mask);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -163,6 +185,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(photographs_from_one_side_have_no_near_hull, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(masks_that_leave_the_room_in_are_no_silhouettes, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(masks_that_leave_the_picture_are_no_silhouettes, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(masks_are_silhouettes_if_each_photograph_has_one, set_up,
                                         tear_down),
