@@ -83,7 +83,7 @@ struct photo_data {
 
 // The options of struct orl_render_params, as member `opt`. C has struct render_options of
 // include/oriel/option_list.h, which must be included first. In GLSL the define RENDER_OPTIONS
-// declares the same members; src/render/gather.c generates it from the same list.
+// declares the same members; src/render/paint/gather.c generates it from the same list.
 #if defined(BLOCK_GATHER)
 struct render_options {
     RENDER_OPTIONS

@@ -11,7 +11,7 @@
 #include "eval/choice.h"
 #include "hdr/replace.h"
 #include "oriel/hdr.h"
-#include "render/sequence.h"
+#include "render/output/sequence.h"
 
 #define HDR_OPTIONS(ROW) \
     VIEW_OPTIONS(ROW) \

@@ -4,7 +4,7 @@
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/choice.h"
-#include "render/sequence.h"
+#include "render/output/sequence.h"
 
 struct job {
     struct call *call;

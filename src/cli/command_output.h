@@ -5,7 +5,7 @@
 #include "core/arguments.h"
 #include "oriel/render.h"
 #include "oriel/scene.h"
-#include "render/output.h"
+#include "render/output/output.h"
 #include "scene/view_choice.h"
 
 // --- options that several commands have ---

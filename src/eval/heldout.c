@@ -5,8 +5,8 @@
 
 #include "core/color.h"
 #include "core/memory.h"
-#include "render/photo_loader.h"
-#include "render/reexpose.h"
+#include "render/output/reexpose.h"
+#include "render/photos/photo_loader.h"
 
 enum { METRIC_SIDE = 11 }; // side of SSIM's window, pixels
 

@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "eval/validation.h"
-#include "render/importance.h"
+#include "render/proxy/importance.h"
 #include "scene/nearest_points.h"
 #include "scene/point_radii.h"
 

@@ -6,7 +6,7 @@
 #include "core/vec3.h"
 #include "exchange/kinds.h"
 #include "oriel/hdr.h"
-#include "render/output.h"
+#include "render/output/output.h"
 
 enum { WIDTH = 2048 };
 

@@ -5,7 +5,7 @@
 
 #include "oriel/hdr.h"
 #include "oriel/progress.h"
-#include "render/tone.h"
+#include "render/output/tone.h"
 
 struct orl_replace_params {
     int series;

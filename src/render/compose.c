@@ -1,11 +1,11 @@
 #include "render/compose.h"
 
-#include "render/edges.h"
-#include "render/fill.h"
-#include "render/gather.h"
-#include "render/method.h"
-#include "render/room.h"
-#include "render/soften.h"
+#include "render/frame/method.h"
+#include "render/paint/edges.h"
+#include "render/paint/fill.h"
+#include "render/paint/gather.h"
+#include "render/paint/soften.h"
+#include "render/papers/room.h"
 
 static bool always(const struct frame *frame)
 {

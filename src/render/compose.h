@@ -2,7 +2,7 @@
 #ifndef ORL_RENDER_COMPOSE_H
 #define ORL_RENDER_COMPOSE_H
 
-#include "render/frame.h"
+#include "render/frame/frame.h"
 
 // A pass after the painter. The passes run in the order of the list.
 struct post_pass {

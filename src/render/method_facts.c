@@ -2,13 +2,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/billboards.h"
-#include "render/gather.h"
-#include "render/method.h"
-#include "render/princ.h"
-#include "render/select.h"
-#include "render/proxy.h"
-#include "render/tiled.h"
+#include "render/frame/method.h"
+#include "render/hull/voxel_proxy.h"
+#include "render/paint/gather.h"
+#include "render/paint/tiled.h"
+#include "render/papers/billboards.h"
+#include "render/papers/princ.h"
+#include "render/photos/select.h"
+#include "render/proxy/proxy.h"
 
 const char *orl_method_asks(const struct orl_method *method)
 {

@@ -5,13 +5,14 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "render/billboards.h"
-#include "render/gather.h"
-#include "render/method.h"
-#include "render/princ.h"
-#include "render/proxy.h"
-#include "render/select.h"
-#include "render/tiled.h"
+#include "render/frame/method.h"
+#include "render/hull/voxel_proxy.h"
+#include "render/paint/gather.h"
+#include "render/paint/tiled.h"
+#include "render/papers/billboards.h"
+#include "render/papers/princ.h"
+#include "render/photos/select.h"
+#include "render/proxy/proxy.h"
 
 #define SLOT_DEFAULT(field, type, preset, readers, help) .field = preset,
 #define FILE_DEFAULT(field, preset, readers, help) .field = preset,
@@ -30,7 +31,6 @@
     , .front_layer = 0.01f, .min_support = 8, .guess_depths = 16, \
     .antialias = ORL_ANTIALIAS_ON
 
-const struct orl_combine orl_combine_mean = {"mean", .sweeps = 1};
 static const struct orl_combine combine_top = {"top", .sweeps = 2, .states = 2};
 static const struct orl_combine combine_sigma = {"sigma", .sweeps = 2, .states = 2};
 static const struct orl_combine combine_best = {"best", .sweeps = 1};

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "render/proxy/proxy.h"
 #include "shared/render_blocks.h"
 
 // The largest splats are so many times as large as the scene's own, the smallest as much smaller.

@@ -8,7 +8,7 @@
 #ifndef ORL_RENDER_RECONSTRUCTIONS_H
 #define ORL_RENDER_RECONSTRUCTIONS_H
 
-#include "render/frame.h"
+#include "render/frame/frame.h"
 
 // How many pictures this frame is the mean of.
 int orl_reconstruction_count(const struct frame *frame);

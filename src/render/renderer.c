@@ -3,20 +3,21 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/prefetch.h"
 #include "render/compose.h"
-#include "render/edges.h"
-#include "render/fill.h"
-#include "render/gather.h"
-#include "render/guess.h"
-#include "render/method.h"
-#include "render/photos.h"
-#include "render/progressive.h"
-#include "render/proxy.h"
+#include "render/frame/method.h"
+#include "render/hull/prefetch.h"
+#include "render/hull/voxel_proxy.h"
+#include "render/paint/edges.h"
+#include "render/paint/fill.h"
+#include "render/paint/gather.h"
+#include "render/paint/guess.h"
+#include "render/paint/soften.h"
+#include "render/papers/room.h"
+#include "render/photos/photos.h"
+#include "render/photos/progressive.h"
+#include "render/proxy/proxy.h"
 #include "render/read_back.h"
 #include "render/reconstructions.h"
-#include "render/room.h"
-#include "render/soften.h"
 
 enum { PROXIES_MAX = 4 };
 
@@ -297,10 +298,11 @@ static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame,
 static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
 {
     orl_photos_follow_time_step(&r->photos);
-    if (r->prefetch && orl_prefetch_time_step(r->prefetch) == r->scene->frame)
-        frame->prefetch = r->prefetch;
+    bool early = r->prefetch && orl_prefetch_time_step(r->prefetch) == r->scene->frame;
+    r->photos.source = early ? orl_prefetch_source(r->prefetch) : NULL;
+    orl_hull_expect(frame->proxy, early ? r->prefetch : NULL);
     enum orl_result result = orl_proxy_update(frame);
-    frame->depth_key = orl_photos_depth_key(frame);
+    r->photos.depth_key = orl_photos_depth_key(frame);
     ORL_THEN(result, orl_photos_ready(r->gpu, &r->photos));
     ORL_THEN(result, resize(r, frame));
     frame->picture = r->picture;

@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "oriel/gpu.h"
-#include "render/tone.h"
+#include "render/output/tone.h"
 #include "walk/publish.h"
 #include "walk/settings.h"
 

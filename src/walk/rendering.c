@@ -9,7 +9,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "oriel/path.h"
-#include "render/sequence.h"
+#include "render/output/sequence.h"
 #include "walk/internal.h"
 
 enum { WIDTH = 1280, HEIGHT = 720, FPS = 24, FRAMES_MAX = 100000, NUMBER_MAX = 999 };

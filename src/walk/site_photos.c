@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "oriel/path.h"
-#include "render/occluders.h"
+#include "render/photos/occluders.h"
 #include "walk/internal.h"
 
 enum {

@@ -7,7 +7,7 @@
 #include "eval/metrics.h"
 #include "oriel/gpu.h"
 #include "oriel/render.h"
-#include "render/photo_loader.h"
+#include "render/photos/photo_loader.h"
 
 struct place {
     struct orl_scene *scene;

@@ -6,7 +6,7 @@
 #include "scene/point_code.h"
 #include "scene/point_lod.h"
 #include "test.h"
-#include "render/splats.h"
+#include "render/proxy/splats.h"
 
 static struct orl_gpu *gpu;
 

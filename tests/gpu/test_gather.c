@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/color.h"
-#include "render/reexpose.h"
+#include "render/output/reexpose.h"
 #include "wall_scene.h"
 
 static struct orl_gpu *gpu;

@@ -4,8 +4,8 @@
 
 #include "core/color.h"
 #include "figure_scene.h"
-#include "render/billboards.h"
-#include "render/voxels.h"
+#include "render/papers/billboards.h"
+#include "render/hull/voxels.h"
 
 enum { SIDE = 64, FIGURE_W = 96, FIGURE_H = 72, CAMERAS = 8 };
 

@@ -371,7 +371,7 @@ static void weights_are_in_units_of_the_distance(void **state)
     teardown(&f);
 }
 
-// By the model of src/render/radiance.c, which the shaders repeat.
+// By the model of src/render/photos/radiance.c, which the shaders repeat.
 static void confidence_is_that_of_the_noise(void **state)
 {
     (void)state;

@@ -3,9 +3,10 @@
 #include <math.h>
 
 #include "figure_scene.h"
-#include "render/mesh_proxy.h"
-#include "render/method.h"
-#include "render/photos.h"
+#include "render/proxy/mesh_proxy.h"
+#include "render/frame/method.h"
+#include "render/hull/voxel_proxy.h"
+#include "render/photos/photos.h"
 
 enum { SIDE = 64 };
 

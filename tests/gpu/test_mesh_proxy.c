@@ -2,8 +2,8 @@
 // photographs painted on them.
 #include <math.h>
 
-#include "render/method.h"
-#include "render/proxy.h"
+#include "render/frame/method.h"
+#include "render/proxy/proxy.h"
 #include "scene/mesh.h"
 #include "wall_scene.h"
 

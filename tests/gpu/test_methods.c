@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/method.h"
-#include "render/select.h"
+#include "render/frame/method.h"
+#include "render/photos/select.h"
 #include "oriel/points.h"
 #include "wall_scene.h"
 

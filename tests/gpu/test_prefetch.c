@@ -3,8 +3,9 @@
 #include <math.h>
 
 #include "figure_scene.h"
-#include "render/prefetch.h"
-#include "render/photos.h"
+#include "render/hull/prefetch.h"
+#include "render/hull/voxel_proxy.h"
+#include "render/photos/photos.h"
 
 enum { W = 96, H = 72, CAMERAS = 5, TIME_STEPS = 3 };
 
@@ -186,7 +187,8 @@ static void files_are_read_once(void **state)
     }
     orl_proxy_finish(gpu, &s.proxy);
     assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, 0, &s.proxy), ORL_OK);
-    s.frame.prefetch = prefetch;
+    s.photos.source = orl_prefetch_source(prefetch);
+    orl_hull_expect(&s.proxy, prefetch);
     assert_int_equal(orl_proxy_update(&s.frame), ORL_OK);
     assert_int_equal(s.proxy.vertex_count, count);
     assert_memory_equal(s.proxy.vertices, plain, count * sizeof *plain);
@@ -236,8 +238,9 @@ static void missing_files_are_left_alone(void **state)
     remove_file(orl_scene_photo_path(NULL, &s.f.scene, 3));
     s.f.scene.frame = 0;
     struct prefetch *prefetch = prepare(&s);
-    assert_false(orl_prefetch_take_photo(prefetch, 0, &image));
-    assert_false(orl_prefetch_take_mask(prefetch, 0, &image));
+    struct photo_source *source = orl_prefetch_source(prefetch);
+    assert_false(source->take_photo(source, 0, &image));
+    assert_false(source->take_mask(source, 0, &image));
     assert_false(orl_prefetch_take_hull(gpu, prefetch, key, &voxels, &mesh));
     orl_prefetch_destroy(gpu, &prefetch);
     finish_stage(&s);

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gpu_test.h"
-#include "render/splats.h"
+#include "render/proxy/splats.h"
 
 static struct orl_gpu *gpu;
 

@@ -12,7 +12,7 @@
 #include "io/picture.h"
 #include "opencv_files.h"
 #include "oriel/prepare.h"
-#include "render/photo_loader.h"
+#include "render/photos/photo_loader.h"
 
 enum { W = 96, H = 80 }; // the stand-in's camera
 

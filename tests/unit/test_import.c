@@ -9,7 +9,7 @@
 #include "preprocess/import.h"
 #include "preprocess/import/import_internal.h"
 #include "oriel/scene.h"
-#include "render/photo_loader.h"
+#include "render/photos/photo_loader.h"
 #include "scene/linear.h"
 #include "scene/silhouette.h"
 #include "test.h"

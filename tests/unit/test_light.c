@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "oriel/render.h"
-#include "render/reexpose.h"
+#include "render/output/reexpose.h"
 #include "scene/light.h"
 #include "test.h"
 

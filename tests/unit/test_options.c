@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "oriel/render.h"
-#include "render/method.h"
+#include "render/frame/method.h"
 #include "test.h"
 
 static void tries_can_be_set(void **state)

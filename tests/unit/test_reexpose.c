@@ -3,8 +3,8 @@
 #include <math.h>
 
 #include "core/color.h"
-#include "render/reexpose.h"
-#include "render/tone.h"
+#include "render/output/reexpose.h"
+#include "render/output/tone.h"
 #include "scene/meter.h"
 
 enum { W = 41, H = 31 };

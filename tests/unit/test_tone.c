@@ -4,7 +4,7 @@
 
 #include "core/color.h"
 #include "oriel/render.h"
-#include "render/tone.h"
+#include "render/output/tone.h"
 
 static struct orl_image pixels(const float (*rgb)[3], int count)
 {

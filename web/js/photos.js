@@ -10,7 +10,7 @@ export function makePhotos(manifest)
     });
 }
 
-// --- choice, as src/render/select.c makes it ---
+// --- choice, as src/render/photos/select.c makes it ---
 
 const ACROSS = 5, DEPTHS = [0.4, 1, 4], PER_SAMPLE = 8;
 

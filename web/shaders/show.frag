@@ -54,7 +54,7 @@ vec3 distinct(float number)
 
 const float WHITE = 8.0; // luminance that Reinhard's curve makes white
 
-// The curves of src/render/tone.c.
+// The curves of src/render/output/tone.c.
 vec3 toned(vec3 light)
 {
     if (tone == 1) {

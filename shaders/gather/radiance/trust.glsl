@@ -1,4 +1,4 @@
-// Noise model of the samples of photographs; src/render/radiance.c is the same in C.
+// Noise model of the samples of photographs; src/render/photos/radiance.c is the same in C.
 
 // The squared step between 8-bit sRGB values, in linear exposure, is STEP_LINEAR in the linear part
 // of the curve. Elsewhere it is STEP_SLOPE times the exposure, within a fifth where rounding

@@ -4,7 +4,7 @@
 
 // Brings linear colour to the scene's exposure and white balance and undoes the vignetting. The
 // mapping is linear except for the brightest colours. White stays white, since a clipped photograph
-// was at least that bright, and cameras compress highlights. src/render/reexpose.c inverts it.
+// was at least that bright, and cameras compress highlights. src/render/output/reexpose.c inverts it.
 vec3 photo_aligned(photo source, vec2 pixel, vec3 color)
 {
     vec2 off = pixel - source.focal.zw;

@@ -1,0 +1,75 @@
+#include "render/frame/frame.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "scene/ground_plane.h"
+#include "shared/interop.h"
+
+// Beyond this many times the height of the photographs, objects on the ground occlude it.
+static const double GROUND_REACH = 20;
+
+void orl_pixel_groups(int width, int height, unsigned groups[3])
+{
+    groups[0] = orl_groups((size_t)width, ORL_PIXEL_GROUP_X);
+    groups[1] = orl_groups((size_t)height, ORL_PIXEL_GROUP_Y);
+    groups[2] = 1;
+}
+
+bool orl_frame_guesses(const struct frame *frame)
+{
+    return frame->params->fill == ORL_FILL_DEPTH || frame->params->fill == ORL_FILL_GROUND;
+}
+
+bool orl_frame_shows_room(const struct frame *frame)
+{
+    return frame->params->fill == ORL_FILL_ROOM;
+}
+
+bool orl_frame_rests(const struct frame *frame)
+{
+    return orl_frame_guesses(frame) && frame->scene->backdrop_rests;
+}
+
+double orl_frame_footprint(const struct frame *frame)
+{
+    const struct orl_scene *scene = frame->scene;
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        sum += scene->photos[i].test ? 0 : scene->photos[i].view.camera.fx;
+        count += !scene->photos[i].test;
+    }
+    return count > 0 ? fmax(sum / count / frame->view->camera.fx, 1) : 1;
+}
+
+void orl_frame_ground(const struct frame *frame, float out[4])
+{
+    const struct orl_ground *ground = &frame->scene->ground;
+    double inverse[3];
+    memset(out, 0, 4 * sizeof *out);
+    if (frame->params->fill != ORL_FILL_GROUND ||
+        !orl_ground_along_rays(ground, frame->view, inverse))
+        return;
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)inverse[k];
+    out[3] = (float)(1 / (GROUND_REACH * ground->height));
+}
+
+void orl_set_pose(const struct orl_pose *pose, float rotation[3][4], float eye[4])
+{
+    double centre[3];
+    orl_pose_centre(pose, centre);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            rotation[i][j] = (float)pose->r[i][j];
+        eye[i] = (float)centre[i];
+    }
+}
+
+void orl_set_focal(const struct orl_camera *camera, float focal[4])
+{
+    focal[0] = (float)camera->fx;
+    focal[1] = (float)camera->fy;
+    focal[2] = (float)camera->cx;
+    focal[3] = (float)camera->cy;
+}

@@ -1,0 +1,76 @@
+// Private to src/render: one view while it is rendered, from the surface to the picture.
+#ifndef ORL_RENDER_FRAME_H
+#define ORL_RENDER_FRAME_H
+
+#include "oriel/render.h"
+
+struct proxy;
+struct photos;
+struct gather;
+struct fill;
+struct soften;
+struct edges;
+struct guess;
+
+// The result of a proxy, which is all that later passes see of it.
+struct surface {
+    int width, height;
+    struct orl_tex *depth;  // R32F: z in camera space; 0: none; < 0: estimated background
+    struct orl_tex *normal; // RGBA16F: camera frame, 0: none; w: 1 if a primitive is visible
+};
+
+// The state that every pass gets. Passes keep data that outlives a frame in their own structs.
+struct frame {
+    struct orl_gpu *gpu;
+    const struct orl_scene *scene;
+    const struct orl_view *view;
+    const struct orl_render_params *params;
+    bool radiance;             // photographs are sampled as radiance
+    bool reads_chroma;         // colours of photographs are luma, and chroma in a second texture
+    bool finishes;             // the painter leaves finished pixels (struct orl_painter)
+    struct orl_progressive *progressive; // NULL: the frame waits for its photographs
+    bool normals;              // the surface has normals
+    const bool *skip;          // per photograph: leave it out; NULL: use all
+    struct proxy *proxy;       // draws the surfaces of this view and of the photographs
+    struct surface surface;    // surface that the view sees
+    struct photos *photos;     // photographs on the device
+    struct gather *gather;     // parameters of the photographs in use
+    struct fill *fill;
+    struct soften *soften;
+    struct edges *edges;
+    struct guess *guess;
+    // Indices of the photographs that this frame asks, ascending; memory of the renderer.
+    size_t *chosen;
+    float (*selected)[4];      // by the selection: weight of each; x y z its own use
+    size_t chosen_count;
+    // Pixels as in shaders/shared/pixel.glsl, finished at the end. Half floats if the painter
+    // finishes pixels.
+    struct orl_tex *picture;
+    struct orl_tex *trusted;   // radiance: weight * confidence, weight, blur; else NULL
+    struct orl_tex *room;      // RGBA32F, room.h; NULL: not shown
+    size_t room_absent;        // photographs that a progressive frame's room lacks
+    struct orl_tex *states[2]; // RGBA32F, state of a combination between sweeps, and output of
+                               // a filter; else NULL
+    struct orl_tex *mean;      // RGBA32F, reconstructions.h; NULL: there is one alone
+};
+
+// Number of work groups that cover width x height pixels.
+void orl_pixel_groups(int width, int height, unsigned groups[3]);
+// True if this frame estimates background depth where no surface covers a pixel.
+bool orl_frame_guesses(const struct frame *frame);
+// True if this frame shows the scene's room (papers/room.h) where there is no surface.
+bool orl_frame_shows_room(const struct frame *frame);
+// True if the backdrop stays where it is in photographs (scene.h).
+bool orl_frame_rests(const struct frame *frame);
+// How many pixels of a photograph a pixel of the view covers each way where both are equally far, in
+// the mean over the photographs; at least 1. What is known of the scene by photographs, such as where
+// a silhouette is, is as exact as their pixels, whatever the view's are.
+double orl_frame_footprint(const struct frame *frame);
+// The scene's ground for image_block and gather_block; zeros if the frame's estimated depth is not
+// limited by the ground.
+void orl_frame_ground(const struct frame *frame, float ground[4]);
+// The rows of cam_from_world's rotation, and the camera's centre.
+void orl_set_pose(const struct orl_pose *pose, float rotation[3][4], float eye[4]);
+void orl_set_focal(const struct orl_camera *camera, float focal[4]);
+
+#endif

@@ -1,0 +1,44 @@
+// Private to src/render: the implementations behind the names of a method's slots.
+#ifndef ORL_RENDER_METHOD_H
+#define ORL_RENDER_METHOD_H
+
+#include "oriel/render.h"
+
+struct frame;
+
+// A rule that selects the photographs that a frame asks.
+struct orl_selection {
+    const char *name;
+    // Writes their indices in ascending order to frame->chosen, at most `most` of them. `all`
+    // ignores `most`.
+    enum orl_result (*choose)(struct frame *frame, size_t most);
+};
+
+// How the samples of a pixel become one colour (shaders/gather/combine), and how this streams when
+// the photographs do not all fit on the device. A combination of sums adds to them batch by batch;
+// one that must know all samples before it can weigh one asks all photographs twice.
+struct orl_combine {
+    const char *name;
+    int sweeps; // 1 or 2; 0: implemented by one painter only
+    int states; // state images that are kept between sweeps, [0, 2]
+};
+
+// A painter turns a surface into colours.
+struct orl_painter {
+    const char *name;
+    const char *needs; // required choices, as readers of option_list.h; all must hold
+    bool finishes;     // finishes all pixels that it does not list (shaders/shared/pixel.glsl),
+                       // except in radiance
+    bool layers;               // the fourth channel is alpha: what is behind shows through
+    bool (*reads_normals)(const struct frame *frame); // the surface's normals; NULL: never
+    enum orl_result (*paint)(struct frame *frame);
+};
+
+// The `index`-th implementation of the slot `key`; NULL past the last, or if it is not a slot.
+const void *orl_slot_at(const char *key, size_t index);
+// The name of such an implementation, its first member.
+const char *orl_slot_name(const void *slot);
+// True if "key=name" holds for `sample` or for an option that is read.
+bool orl_render_params_equal(const struct orl_render_params *params, const char *condition);
+
+#endif

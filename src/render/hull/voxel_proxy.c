@@ -1,0 +1,213 @@
+// Proxies made of silhouettes. `voxels`: each voxel at the surface is a square parallel to the image
+// plane, wide enough to cover it from any side (Goldluecke 2003, section 3). `hull`: their visual hull as
+// a mesh (Li 2003, section 4). The paper intersects cones; here the surface is found on a grid of voxels,
+// at the distance from the cones.
+#include "render/hull/voxel_proxy.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "gpu/raster.h"
+#include "render/hull/prefetch.h"
+#include "render/photos/photos.h"
+#include "render/proxy/raster_target.h"
+#include "shared/hull_blocks.h"
+
+static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              size_t max_bytes, void **out)
+{
+    (void)scene, (void)max_bytes; // update makes what is drawn
+    *out = orl_array(orl_gpu_log(gpu), 1, sizeof(struct voxel_state));
+    return *out ? ORL_OK : ORL_ERR_MEMORY;
+}
+
+static void forget(struct orl_gpu *gpu, struct voxel_state *state)
+{
+    orl_mesh_state_finish(gpu, &state->mesh);
+    orl_buf_destroy(gpu, &state->centres);
+    orl_voxels_finish(&state->voxels);
+    free(state->seen);
+    *state = (struct voxel_state){.said_endless = state->said_endless, .prefetch = state->prefetch};
+}
+
+static void destroy(struct orl_gpu *gpu, void **handle)
+{
+    if (!*handle)
+        return;
+    forget(gpu, *handle);
+    free(*handle);
+    *handle = NULL;
+}
+
+// Takes the voxels, and with `hull` their mesh, from what was prepared for the frame, or makes them.
+static enum orl_result make(const struct frame *frame, struct voxel_state *state, bool hull)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct voxels *voxels = &state->voxels;
+    struct orl_mesh *mesh = hull ? &state->mesh.mesh : NULL;
+    enum orl_result result = ORL_OK;
+    if (hull && !orl_voxels_silhouettes(frame))
+        return orl_fail(log, ORL_ERR_NOT_FOUND,
+                        "%s: no silhouettes to make a hull of; see oriel import",
+                        frame->scene->dir);
+    if (!orl_prefetch_take_hull(frame->gpu, state->prefetch, state->key, voxels, mesh)) {
+        result = orl_voxels_make(frame, voxels);
+        if (result == ORL_OK && hull)
+            result = orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh);
+    }
+    orl_voxels_warn(log, voxels, &state->said_endless);
+    if (result == ORL_OK && !hull && !voxels->count)
+        result = orl_fail(log, ORL_ERR_DATA, "%s: no voxel is left", frame->scene->dir);
+    return result;
+}
+
+static enum orl_result upload(struct orl_gpu *gpu, struct voxel_state *state, bool hull)
+{
+    struct voxels *voxels = &state->voxels;
+    if (!hull)
+        return orl_buf_create(gpu, ORL_OWNER_POINTS, "voxel centres",
+                              voxels->count * sizeof *voxels->centre, voxels->centre,
+                              &state->centres);
+    orl_voxels_finish(voxels); // the mesh is all that is drawn
+    return orl_mesh_state_upload(gpu, &state->mesh);
+}
+
+static enum orl_result update(const struct frame *frame, void *handle, bool *changed)
+{
+    struct voxel_state *state = handle;
+    bool hull = frame->proxy->kind == &orl_proxy_hull;
+    uint64_t key = orl_voxels_key(frame);
+    if ((state->centres || state->mesh.vertices) && state->key == key)
+        return ORL_OK;
+    forget(frame->gpu, state);
+    state->key = key;
+    *changed = true;
+    orl_pass_begin(frame->gpu, "hull");
+    enum orl_result result = make(frame, state, hull);
+    ORL_THEN(result, upload(frame->gpu, state, hull));
+    orl_pass_end(frame->gpu);
+    if (result != ORL_OK)
+        forget(frame->gpu, state);
+    return result;
+}
+
+void orl_hull_expect(struct proxy *proxy, struct prefetch *prefetch)
+{
+    struct voxel_state *state = proxy->state;
+    if (proxy->kind == &orl_proxy_hull || proxy->kind == &orl_proxy_voxels)
+        state->prefetch = prefetch;
+}
+
+const struct orl_proxy_kind orl_proxy_hull = {
+    .name = "hull", .create = create, .update = update, .vertices = orl_mesh_vertices,
+    .destroy = destroy, .resize = orl_raster_target_resize,
+    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
+    .draw = orl_mesh_draw,
+};
+
+static void vertices(const void *handle, const struct orl_scene *scene, const float (**out)[3],
+                     size_t *count)
+{
+    const struct voxel_state *state = handle;
+    (void)scene;
+    *out = (const float(*)[3])state->voxels.centre;
+    *count = state->voxels.count;
+}
+
+double orl_billboard_width(const struct voxel_state *state)
+{
+    return sqrt(3) * state->voxels.cube.voxel;
+}
+
+static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
+                 const struct orl_render_params *params, bool normals, void *memory,
+                 struct surface *surface)
+{
+    const struct voxel_state *state = handle;
+    const struct raster_target *target = memory;
+    struct billboard_block block = {
+        .view_size = {target->width, target->height},
+        .billboard_half = (float)(0.5 * orl_billboard_width(state)),
+    };
+    (void)params, (void)normals; // a billboard has no normal of its surface
+    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
+    orl_set_focal(&view->camera, block.view_focal);
+    const struct orl_raster raster = {
+        .prog = orl_prog_get_raster(gpu, "hull/billboard.vert", "hull/depth.frag", NULL),
+        .params = &block, .params_size = sizeof block,
+        .inputs = {{state->centres, 0, 3 * sizeof(float), 3, GL_FLOAT, true}},
+        .primitive = GL_TRIANGLES, .count = 6, .instances = state->voxels.count,
+        .targets = {target->depth, target->normal}, .depth = target->test,
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
+    };
+    orl_pass_begin(gpu, "voxels");
+    orl_gpu_raster(gpu, &raster);
+    orl_pass_end(gpu);
+    *surface = (struct surface){.width = target->width, .height = target->height,
+                                .depth = target->depth, .normal = target->normal};
+}
+
+const struct orl_proxy_kind orl_proxy_voxels = {
+    .name = "voxels", .create = create, .update = update, .vertices = vertices,
+    .destroy = destroy, .resize = orl_raster_target_resize,
+    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes, .draw = draw,
+};
+
+// --- which photographs see a voxel ---
+
+static enum orl_result see_from(const struct frame *frame, struct voxel_state *state,
+                                size_t photo, struct orl_buf *seen)
+{
+    struct proxy *proxy = frame->proxy;
+    struct orl_view view = {.camera = frame->photos->states[photo].depth_camera,
+                            .cam_from_world = frame->scene->photos[photo].view.cam_from_world};
+    struct surface surface;
+    enum orl_result result = orl_proxy_draw(frame->gpu, proxy, &view, frame->params, false,
+                                            &proxy->photo_target, &surface);
+    if (result != ORL_OK)
+        return result;
+    struct seen_block block = {.size = {surface.width, surface.height},
+                               .voxel_count = (int)state->voxels.count,
+                               .words = (int)state->words, .word = (int)(photo / 32),
+                               .bit = (int)(photo % 32),
+                               .voxel = (float)state->voxels.cube.voxel};
+    orl_set_pose(&view.cam_from_world, block.rotation, block.eye);
+    orl_set_focal(&view.camera, block.focal);
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(frame->gpu, "hull/seen.comp", NULL, NULL),
+        .params = &block, .params_size = sizeof block,
+        .bufs = {{.buf = state->centres}, {.buf = seen}},
+        .images = {{surface.depth, 0, GL_READ_ONLY}},
+        .groups = {orl_groups(state->voxels.count, SEEN_GROUP)},
+        .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT};
+    orl_gpu_dispatch(frame->gpu, &d);
+    return ORL_OK;
+}
+
+enum orl_result orl_voxels_see(const struct frame *frame, struct voxel_state *state)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct orl_buf *seen = NULL;
+    if (state->seen)
+        return ORL_OK;
+    state->words = (frame->scene->photo_count + 31) / 32;
+    size_t words = 2 * state->words * state->voxels.count;
+    state->seen = orl_array(log, words, sizeof *state->seen);
+    enum orl_result result =
+        state->seen ? orl_buf_create(frame->gpu, ORL_OWNER_FRAME, "what photographs see",
+                                     words * sizeof *state->seen, NULL, &seen)
+                    : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < frame->scene->photo_count; i++)
+        if (frame->photos->states[i].usable)
+            result = see_from(frame, state, i, seen);
+    if (result == ORL_OK)
+        orl_buf_read(seen, 0, words * sizeof *state->seen, state->seen);
+    orl_buf_destroy(frame->gpu, &seen);
+    if (result != ORL_OK) {
+        free(state->seen);
+        state->seen = NULL;
+    }
+    return result;
+}

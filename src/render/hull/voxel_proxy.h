@@ -1,0 +1,36 @@
+// Private to src/render: what is carved from silhouettes as the proxy: voxels, drawn as billboards, or
+// their hull.
+#ifndef ORL_RENDER_VOXEL_PROXY_H
+#define ORL_RENDER_VOXEL_PROXY_H
+
+#include "render/proxy/mesh_proxy.h"
+#include "render/hull/voxels.h"
+
+extern const struct orl_proxy_kind orl_proxy_hull, orl_proxy_voxels;
+
+// State of orl_proxy_hull and orl_proxy_voxels.
+struct voxel_state {
+    struct mesh_state mesh;  // of orl_proxy_hull; first: see mesh_proxy.h
+    uint64_t key;            // orl_voxels_key of the voxels
+    bool said_endless;
+    struct prefetch *prefetch; // orl_hull_expect
+    // Of orl_proxy_voxels:
+    struct voxels voxels;
+    struct orl_buf *centres; // voxels.centre on the device
+    // Per voxel two sets of photographs, `words` words each: bit i of the first for a photograph i
+    // of the scene that sees the whole of the voxel, of the second for one that sees a part. NULL
+    // until they are asked for; owned.
+    uint32_t *seen;
+    size_t words;
+};
+
+// Gives a proxy of these kinds what was prepared for the frame that it is next brought up to date for; NULL:
+// nothing. Does nothing to other kinds.
+void orl_hull_expect(struct proxy *proxy, struct prefetch *prefetch);
+// Finds which of the frame's photographs see which voxels of its proxy, unless that is known.
+enum orl_result orl_voxels_see(const struct frame *frame, struct voxel_state *state);
+// Width of a billboard, scene units: no voxel's projection reaches beyond it (Goldluecke 2003,
+// section 3).
+double orl_billboard_width(const struct voxel_state *state);
+
+#endif

@@ -1,0 +1,223 @@
+// Voxels from silhouettes, carved on the device, and from points.
+#include "render/hull/voxels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "core/memory.h"
+#include "render/photos/photos.h"
+#include "render/proxy/proxy.h"
+
+bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo)
+{
+    return frame->scene->photos[photo].masked && frame->photos->states[photo].usable &&
+           !(frame->skip && frame->skip[photo]);
+}
+
+bool orl_voxels_silhouettes(const struct frame *frame)
+{
+    for (size_t i = 0; i < frame->scene->photo_count; i++)
+        if (orl_voxels_has_silhouette(frame, i))
+            return true;
+    return false;
+}
+
+int orl_voxels_side(const struct frame *frame)
+{
+    return (int)(frame->params->hull_side + 0.5f);
+}
+
+uint64_t orl_voxels_key(const struct frame *frame)
+{
+    const int side = orl_voxels_side(frame);
+    uint64_t key = XXH3_64bits(&side, sizeof side);
+    for (size_t i = 0; i < frame->scene->photo_count; i++) {
+        const int64_t silhouette[2] = {(int64_t)i, frame->scene->frame};
+        if (orl_voxels_has_silhouette(frame, i))
+            key = XXH3_64bits_withSeed(silhouette, sizeof silhouette, key);
+    }
+    return key;
+}
+
+void orl_voxels_finish(struct voxels *voxels)
+{
+    free(voxels->field);
+    free(voxels->centre);
+    memset(voxels, 0, sizeof *voxels);
+}
+
+static size_t cells(int side)
+{
+    return (size_t)side * (size_t)side * (size_t)side;
+}
+
+// --- the surface ---
+
+static bool stays(const struct voxels *v, size_t x, size_t y, size_t z)
+{
+    size_t side = (size_t)v->cube.side;
+    if (x >= side || y >= side || z >= side) // size_t: below 0 too
+        return false;
+    return v->field[x + side * (y + side * z)] <= 0;
+}
+
+static bool at_surface(const struct voxels *v, size_t x, size_t y, size_t z)
+{
+    return stays(v, x, y, z) &&
+           !(stays(v, x - 1, y, z) && stays(v, x + 1, y, z) && stays(v, x, y - 1, z) &&
+             stays(v, x, y + 1, z) && stays(v, x, y, z - 1) && stays(v, x, y, z + 1));
+}
+
+enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *v)
+{
+    size_t side = (size_t)v->cube.side, capacity = 0;
+    for (size_t z = 0; z < side; z++)
+        for (size_t y = 0; y < side; y++)
+            for (size_t x = 0; x < side; x++) {
+                if (!at_surface(v, x, y, z))
+                    continue;
+                enum orl_result result = orl_grow(log, (void **)&v->centre, &capacity,
+                                                  v->count + 1, sizeof *v->centre);
+                if (result != ORL_OK)
+                    return result;
+                const double at[3] = {(double)x + 0.5, (double)y + 0.5, (double)z + 0.5};
+                for (int k = 0; k < 3; k++)
+                    v->centre[v->count][k] = (float)(v->cube.origin[k] + v->cube.voxel * at[k]);
+                v->count++;
+            }
+    return ORL_OK;
+}
+
+// --- from silhouettes ---
+
+enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,
+                                const struct orl_buf *field, struct voxels *voxels)
+{
+    *voxels = (struct voxels){.endless = cones->bounds.endless,
+                              .cube = {.side = side, .voxel = cones->bounds.size / side}};
+    memcpy(voxels->cube.origin, cones->bounds.origin, sizeof voxels->cube.origin);
+    voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
+    if (!voxels->field)
+        return ORL_ERR_MEMORY;
+    orl_buf_read(field, 0, cells(side) * sizeof *voxels->field, voxels->field);
+    return ORL_OK;
+}
+
+enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouette *silhouettes,
+                                 size_t count, int side, struct voxels *voxels)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct cones cones;
+    struct orl_buf *field = NULL;
+    memset(voxels, 0, sizeof *voxels);
+    enum orl_result result = orl_cones_make(log, silhouettes, count, &cones);
+    ORL_THEN(result, orl_cones_carve(gpu, &cones, side, &field));
+    ORL_THEN(result, orl_voxels_read(log, &cones, side, field, voxels));
+    ORL_THEN(result, orl_voxels_list(log, voxels));
+    orl_buf_destroy(gpu, &field);
+    orl_cones_finish(&cones);
+    if (result != ORL_OK)
+        orl_voxels_finish(voxels);
+    return result;
+}
+
+void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said)
+{
+    if (voxels->endless && !*said)
+        orl_hull_warn_endless(log);
+    *said = *said || voxels->endless;
+}
+
+// --- from points ---
+
+// A cube around all points but the outermost hundredth along each axis.
+static enum orl_result bound_points(const struct orl_log *log, const struct orl_points *points,
+                                    struct orl_hull *cube)
+{
+    double low[3] = {0}, high[3] = {0}, size = 0;
+    enum orl_result result =
+        orl_vertices_range(log, (const float (*)[3])points->position, points->count, 0.01, low, high);
+    if (result != ORL_OK)
+        return result;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, high[k] - low[k]);
+    size = size > 0 ? 1.05 * size : 1;
+    cube->voxel = size / cube->side;
+    for (int k = 0; k < 3; k++)
+        cube->origin[k] = 0.5 * (low[k] + high[k] - size);
+    return ORL_OK;
+}
+
+enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_points *points,
+                                int side, struct voxels *voxels)
+{
+    *voxels = (struct voxels){.cube.side = side};
+    enum orl_result result = bound_points(log, points, &voxels->cube);
+    double voxel = voxels->cube.voxel;
+    if (result == ORL_OK)
+        voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
+    if (result == ORL_OK && !voxels->field)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < cells(side); i++)
+        voxels->field[i] = (float)voxel;
+    for (size_t i = 0; result == ORL_OK && i < points->count; i++) {
+        double at[3];
+        bool inside = true;
+        for (int k = 0; k < 3; k++) {
+            at[k] = floor(((double)points->position[i][k] - voxels->cube.origin[k]) / voxel);
+            inside = inside && at[k] >= 0 && at[k] < side;
+        }
+        if (inside)
+            voxels->field[(size_t)at[0] +
+                          (size_t)side * ((size_t)at[1] + (size_t)side * (size_t)at[2])] =
+                (float)-voxel;
+    }
+    ORL_THEN(result, orl_voxels_list(log, voxels));
+    if (result != ORL_OK)
+        orl_voxels_finish(voxels);
+    return result;
+}
+
+// --- of a frame ---
+
+static enum orl_result read_silhouettes(const struct frame *frame,
+                                        struct orl_silhouette *silhouettes, size_t *count)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    enum orl_result result = ORL_OK;
+    *count = 0;
+    for (size_t i = 0; result == ORL_OK && i < frame->scene->photo_count; i++) {
+        if (!orl_voxels_has_silhouette(frame, i))
+            continue;
+        struct orl_silhouette *one = &silhouettes[*count];
+        one->view = frame->scene->photos[i].view;
+        result = orl_photo_mask_read(log, frame->scene, i, &one->mask);
+        *count += result == ORL_OK;
+    }
+    return result;
+}
+
+enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    const struct orl_scene *scene = frame->scene;
+    size_t count = 0;
+    memset(voxels, 0, sizeof *voxels);
+    if (!orl_voxels_silhouettes(frame)) {
+        if (scene->points.count)
+            return orl_voxels_fill(log, &scene->points, orl_voxels_side(frame), voxels);
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s has neither silhouettes nor points to make "
+                        "voxels of; see oriel import", scene->dir);
+    }
+    struct orl_silhouette *silhouettes = orl_array(log, scene->photo_count, sizeof *silhouettes);
+    if (!silhouettes)
+        return ORL_ERR_MEMORY;
+    enum orl_result result = read_silhouettes(frame, silhouettes, &count);
+    ORL_THEN(result, orl_voxels_carve(frame->gpu, silhouettes, count, orl_voxels_side(frame), voxels));
+    for (size_t i = 0; i < count; i++)
+        orl_image_finish(&silhouettes[i].mask);
+    free(silhouettes);
+    return result;
+}

@@ -1,0 +1,58 @@
+#include "render/paint/edges.h"
+
+#include "render/paint/gather.h"
+#include "shared/render_blocks.h"
+
+enum { LIST = 2 }; // storage binding of shaders/edges/edge_list.glsl
+
+void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)
+{
+    orl_buf_destroy(gpu, &edges->list);
+    edges->width = edges->height = 0;
+}
+
+enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height)
+{
+    if (edges->list && edges->width == width && edges->height == height)
+        return ORL_OK;
+    orl_buf_destroy(gpu, &edges->list);
+    edges->width = width;
+    edges->height = height;
+    // Room for every pixel, since the number of listed pixels is unknown.
+    size_t bytes = 16 * (1 + (size_t)width * (size_t)height);
+    size_t most = orl_gpu_caps(gpu)->max_storage_block;
+    return orl_buf_create(gpu, ORL_OWNER_FRAME, "pixels at edges", bytes < most ? bytes : most,
+                          NULL, &edges->list);
+}
+
+// Runs `find` over all pixels to list some of them. `d` holds the rest of its dispatch, and is then
+// turned into a dispatch over the list.
+static void list(const struct frame *frame, struct orl_prog *find, struct orl_dispatch *d)
+{
+    static const uint32_t nothing[4] = {0, 1, 1, 0};
+    orl_buf_write(frame->edges->list, 0, sizeof nothing, nothing);
+    // One invocation handles 2x2 pixels.
+    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d->groups);
+    d->prog = find;
+    d->bufs[LIST].buf = frame->edges->list;
+    d->barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT;
+    orl_gpu_dispatch(frame->gpu, d);
+    d->indirect = frame->edges->list;
+}
+
+void orl_edges_antialias(const struct frame *frame)
+{
+    struct orl_gpu *gpu = frame->gpu;
+    bool half = frame->picture->params.format == GL_RGBA16F;
+    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
+                                .footprint = (float)orl_frame_footprint(frame)};
+    struct orl_dispatch d = {.params = &block, .params_size = sizeof block,
+                             .images = {{frame->surface.depth, 0, GL_READ_ONLY}}};
+    list(frame, orl_prog_get(gpu, "edges/antialias_find.comp", NULL, NULL), &d);
+    d.images[0] = (struct orl_image_binding){frame->picture, 0, GL_READ_WRITE};
+    d.prog = orl_prog_get(gpu, "edges/antialias.comp", NULL, half ? "HALF" : NULL);
+    orl_gpu_dispatch(gpu, &d);
+    d.prog = orl_prog_get(gpu, "edges/antialias.comp", NULL, half ? "WRITE 1\nHALF" : "WRITE");
+    orl_gpu_dispatch(gpu, &d);
+}

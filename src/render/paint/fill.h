@@ -1,0 +1,29 @@
+// Private to src/render: background depth and colour for pixels that nothing covers.
+#ifndef ORL_RENDER_FILL_H
+#define ORL_RENDER_FILL_H
+
+#include "render/frame/frame.h"
+#include "shared/render_blocks.h"
+
+enum { FILL_LEVELS_MAX = 17 };
+
+struct fill {
+    int width, height, levels;
+    struct image_block block; // parameters of the passes
+    // The pyramid: value * weight, weight. Level 0 has half the picture's size.
+    struct orl_tex *level[FILL_LEVELS_MAX];
+};
+
+enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height);
+void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
+// Writes the estimated background depth ("guess" in identifiers), as negative values, where the
+// surface has none. With fill=ground it is no farther than the scene's ground.
+void orl_fill_depth(const struct frame *frame);
+// Completes frame->room where no photograph shows it.
+void orl_fill_room(const struct frame *frame);
+// Spreads the blended colours over fill->level[0]. Painters that finish pixels have already written
+// sums over 2x2 pixels of (colour, 1) there. In radiance, clipped pixels first take the light
+// around them. Before a room only colours of surfaces count.
+void orl_fill_color(const struct frame *frame);
+
+#endif

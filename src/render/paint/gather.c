@@ -1,0 +1,386 @@
+#include "render/paint/gather.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/paint/fill.h"
+#include "render/photos/photos.h"
+#include "render/photos/progressive.h"
+
+_Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
+_Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
+
+// By the weight `lumigraph` photographs fade out over so many of their pixels at their borders, where others
+// show the same.
+static const float BORDER_PX = 2;
+
+// --- parameters of the shaders ---
+
+// The define RENDER_OPTIONS: declarations of the options, in the order of struct render_options.
+static char *declare_options(const struct orl_log *log)
+{
+    char *text = orl_strdup(log, "RENDER_OPTIONS");
+    for (const struct orl_render_option *o = orl_render_options; text && o->key; o++) {
+        if (o->kind == ORL_OPTION_SLOT || o->kind == ORL_OPTION_FILE)
+            continue;
+        char *longer = orl_format(log, "%s %s %s;", text,
+                                  o->kind == ORL_OPTION_NUMBER ? "float" : "int", o->key);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    memset(gather, 0, sizeof *gather);
+    gather->list = orl_array(log, photo_count, sizeof *gather->list);
+    gather->options = declare_options(log);
+    enum orl_result result = gather->list && gather->options ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        result = orl_buf_create(gpu, ORL_OWNER_FRAME, "photographs of a frame",
+                                photo_count * sizeof *gather->list, NULL, &gather->photos);
+    ORL_THEN(result, orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows));
+    if (result != ORL_OK)
+        orl_gather_finish(gpu, gather);
+    return result;
+}
+
+void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
+{
+    orl_tex_destroy(gpu, &gather->photo_rows);
+    orl_buf_destroy(gpu, &gather->photos);
+    orl_buf_destroy(gpu, &gather->tile_lists);
+    orl_buf_destroy(gpu, &gather->unfinished);
+    free(gather->list);
+    free(gather->options);
+    memset(gather, 0, sizeof *gather);
+}
+
+// photo_from_view = photo_from_world * world_from_view, in doubles, since both translations may be
+// large although their difference is small.
+static void relative_pose(const struct orl_pose *photo, const struct orl_pose *view,
+                          struct photo_data *data)
+{
+    double eye[3], offset[3], photo_eye[3], in_view[3];
+    orl_pose_centre(view, eye);
+    orl_pose_centre(photo, photo_eye);
+    orl_pose_apply(photo, eye, offset);
+    orl_pose_apply(view, photo_eye, in_view);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++)
+                sum += photo->r[i][k] * view->r[j][k];
+            data->from_view[i][j] = (float)sum;
+        }
+        data->from_view[i][3] = (float)offset[i];
+        data->eye[i] = (float)in_view[i];
+    }
+}
+
+static void describe_photo(const struct frame *frame, size_t index, struct photo_data *data)
+{
+    const struct photos *photos = frame->photos;
+    const struct orl_photo *photo = &photos->scene->photos[index];
+    const struct photo_state *state = &photos->states[index];
+    bool aligned = frame->params->alignment == ORL_ALIGNMENT_ON;
+    relative_pose(&photo->view.cam_from_world, &frame->view->cam_from_world, data);
+    data->eye[3] = (float)state->slot;
+    orl_set_focal(&state->color_camera, data->focal);
+    data->size[0] = (float)state->color_camera.width;
+    data->size[1] = (float)state->color_camera.height;
+    struct orl_camera depth = orl_photos_depth_camera(state, state->depth_divide);
+    data->size[2] = (float)depth.width;
+    data->size[3] = (float)depth.height;
+    for (int c = 0; c < 3; c++) {
+        data->gain[c] = aligned || frame->radiance ? photo->gain[c] : 1;
+        data->lens[c] = aligned ? photo->vignette[c] : 0;
+    }
+    data->lens[3] = 4 / (data->size[0] * data->size[0] + data->size[1] * data->size[1]);
+    data->gain[3] = (float)state->slot;
+    if (!frame->radiance)
+        return;
+    for (int c = 0; c < 3; c++)
+        data->gain[c] *= state->white;
+    // In units of the colours as stored on the device.
+    data->noise[0] = (float)photos->sensor.shot / state->white;
+    data->noise[1] = powf((float)photos->sensor.read / state->white, 2);
+    data->noise[2] = state->rounded;
+}
+
+static void copy_options(const struct orl_render_params *params, struct render_options *opt)
+{
+#define NO_COPY(...)
+#define COPY_CHOICE(field, type, names, preset, readers, help) opt->field = (int)params->field;
+#define COPY_NUMBER(field, preset, least, most, unit, readers, tries, help) \
+    opt->field = params->field;
+    ORL_RENDER_OPTIONS(NO_COPY, NO_COPY, COPY_CHOICE, COPY_NUMBER)
+#undef NO_COPY
+#undef COPY_CHOICE
+#undef COPY_NUMBER
+}
+
+int orl_tile_side(const struct frame *frame)
+{
+    return orl_frame_footprint(frame) < 1.5 ? 16 : 8;
+}
+
+struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count)
+{
+    struct gather *g = frame->gather;
+    const struct photos *photos = frame->photos;
+    const struct orl_render_params *params = frame->params;
+    const struct orl_tex_params *depth = &photos->depth_params;
+    const struct orl_tex_params *color = &photos->color_params;
+    for (size_t i = 0; i < count; i++) {
+        describe_photo(frame, frame->chosen[first + i], &g->list[i]);
+        memcpy(g->list[i].selected, frame->selected[first + i], sizeof g->list[i].selected);
+    }
+    orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
+    bool fades = strcmp(params->weight, "lumigraph") == 0;
+    struct gather_block block = {
+        .slot_size = {(float)color->width, (float)color->height, (float)depth->width,
+                      (float)depth->height},
+        .view_size = {frame->view->camera.width, frame->view->camera.height},
+        .photo_count = (int)count,
+        .tile_side = orl_tile_side(frame),
+        .tiles_across = (int)orl_groups((size_t)frame->view->camera.width, orl_tile_side(frame)),
+        .kept = (int)(params->photos_per_pixel + 0.5f),
+        .asked = (int)(params->candidates + 0.5f),
+        .last_mip = (float)(color->levels - 1),
+        .border_px = fades ? BORDER_PX / (float)photos->divide : 0,
+        .outlier_severity = params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
+        .blur_per_radian = orl_frame_guesses(frame) ? params->guess_blur : 0,
+        .model_variance = (float)(photos->sensor.model * photos->sensor.model),
+        .min_radiance = orl_least_radiance(&photos->sensor, photos->ev_brightest, true),
+    };
+    orl_set_focal(&frame->view->camera, block.view_focal);
+    orl_frame_ground(frame, block.ground);
+    copy_options(params, &block.opt);
+    return block;
+}
+
+struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
+                                 const struct orl_slot *slots, const char *defines)
+{
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->gather->options,
+                            frame->reads_chroma ? "CHROMA 1\n" : "",
+                            frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
+                            defines ? defines : "");
+    struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
+    free(text);
+    return prog;
+}
+
+// For radiance, visibility and combination are the same for all methods, since light that bleeds
+// across an edge may be a thousand times as bright as the surface there.
+void orl_gather_slots(const struct frame *frame, struct gather_slots *out)
+{
+    const struct orl_render_params *p = frame->params;
+    bool tested = strcmp(p->visibility, "none") != 0;
+    const char *visibility = frame->radiance && tested ? "gather/radiance/light.glsl" : NULL;
+    const char *combine = frame->radiance ? "gather/radiance/merge.glsl" : NULL;
+    const struct {
+        const char *slot, *name, *instead;
+    } rows[] = {
+        {"sample", frame->radiance ? "radiance" : "srgb", NULL},
+        {"visibility", p->visibility, visibility},
+        {"weight", p->weight, NULL},
+        {"combine", p->combine->name, combine},
+    };
+    _Static_assert(ORL_COUNT(rows) < GATHER_SLOTS, "the last slot is the end");
+    memset(out, 0, sizeof *out);
+    for (size_t i = 0; i < ORL_COUNT(rows); i++) {
+        if (rows[i].instead)
+            snprintf(out->files[i], sizeof out->files[i], "%s", rows[i].instead);
+        else
+            snprintf(out->files[i], sizeof out->files[i], "gather/%s/%s.glsl", rows[i].slot,
+                     rows[i].name);
+        out->slots[i] = (struct orl_slot){rows[i].slot, out->files[i]};
+    }
+}
+
+void orl_gather_set_slot(struct gather_slots *slots, const char *slot, const char *file)
+{
+    for (size_t i = 0; i < GATHER_SLOTS && slots->slots[i].name; i++)
+        if (strcmp(slots->slots[i].name, slot) == 0)
+            snprintf(slots->files[i], sizeof slots->files[i], "%s", file);
+}
+
+enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
+                              struct orl_buf **buf)
+{
+    if (*buf && (*buf)->size >= bytes)
+        return ORL_OK;
+    orl_buf_destroy(gpu, buf);
+    return orl_buf_create(gpu, ORL_OWNER_FRAME, tag, bytes, NULL, buf);
+}
+
+// --- the generic painter ---
+
+// Lists the photographs that contribute most to each tile. The rest of the dispatch is that of the
+// gather.
+static enum orl_result choose_radiance(const struct frame *frame, const struct gather_slots *slots,
+                                       struct orl_dispatch d)
+{
+    size_t across = d.groups[0], down = d.groups[1];
+    enum orl_result result =
+        orl_make_room(frame->gpu, "photographs of tiles",
+                      across * down * ORL_RADIANCE_LIST * sizeof(int), &frame->gather->tile_lists);
+    if (result != ORL_OK)
+        return result;
+    d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", slots->slots, NULL);
+    d.bufs[1].buf = frame->gather->tile_lists;
+    d.groups[0] = orl_groups(across, 8);
+    d.groups[1] = orl_groups(down, 8);
+    d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
+    orl_pass_begin(frame->gpu, "choose");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+    return ORL_OK;
+}
+
+static struct orl_prog *generic_program(const struct frame *frame,
+                                        const struct gather_slots *slots, int sweep)
+{
+    char defines[32];
+    bool limited = frame->radiance && frame->params->paint->finishes;
+    snprintf(defines, sizeof defines, "SWEEP %d\n%s", sweep, limited ? "LIMITED 1\n" : "");
+    return orl_gather_prog(frame, "gather/gather.comp", slots->slots, defines);
+}
+
+static bool reads_normals(const struct frame *frame)
+{
+    struct gather_slots slots;
+    orl_gather_slots(frame, &slots);
+    for (int sweep = 0; sweep < 2; sweep++)
+        if (orl_prog_reads(generic_program(frame, &slots, sweep), "view_normal"))
+            return true;
+    return false;
+}
+
+// One sweep over one batch: the photographs of frame->chosen from `first` on, all resident.
+static enum orl_result gather(const struct frame *frame, size_t first, size_t count, int sweep)
+{
+    struct gather_slots slots;
+    struct gather_block block = orl_gather_prepare(frame, first, count);
+    orl_gather_slots(frame, &slots);
+    struct orl_tex *color = frame->photos->color;
+    struct orl_dispatch d = {
+        .prog = generic_program(frame, &slots, sweep),
+        .params = &block, .params_size = sizeof block,
+        // Without depth maps no shader reads them, but a sampler wants a texture.
+        .textures = {color, frame->photos->depth ? frame->photos->depth : color,
+                     [ORL_PHOTO_CHROMA] = frame->photos->chroma},
+        .images = {{frame->surface.depth, 0, GL_READ_ONLY},
+                   {frame->picture, 0, GL_READ_WRITE},
+                   {frame->radiance ? frame->trusted : frame->states[0], 0, GL_READ_WRITE},
+                   {frame->states[1], 0, GL_READ_WRITE},
+                   {frame->surface.normal, 0, GL_READ_ONLY},
+                   [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
+        // The storage barrier is needed because the next batch overwrites the lists of this one.
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
+    orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
+    if (frame->radiance) {
+        enum orl_result result = choose_radiance(frame, &slots, d);
+        if (result != ORL_OK)
+            return result;
+        d.bufs[1].buf = frame->gather->tile_lists;
+    }
+    orl_pass_begin(frame->gpu, "gather");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+    return ORL_OK;
+}
+
+static bool reads_depth(const struct frame *frame)
+{
+    const char *visibility = frame->params->visibility;
+    // Radiance has a visibility of its own in place of `facing`.
+    return strcmp(visibility, "none") != 0 &&
+           (frame->radiance || strcmp(visibility, "facing") != 0);
+}
+
+// Sweeps over all photographs, in batches of as many as are resident together.
+static enum orl_result sweep_over(const struct frame *frame, int sweep)
+{
+    size_t batch = (size_t)frame->photos->slot_count;
+    bool depth = reads_depth(frame);
+    for (size_t first = 0; first < frame->chosen_count; first += batch) {
+        size_t left = frame->chosen_count - first, count = left < batch ? left : batch;
+        enum orl_result result = ORL_OK;
+        for (size_t i = 0; !frame->progressive && result == ORL_OK && i < count; i++)
+            result = orl_photos_require(frame, frame->chosen[first + i], depth);
+        ORL_THEN(result, gather(frame, first, count, sweep));
+        if (result != ORL_OK)
+            return result;
+    }
+    return ORL_OK;
+}
+
+void orl_gather_clear(const struct frame *frame)
+{
+    struct orl_tex *const targets[] = {frame->picture, frame->trusted, frame->states[0],
+                                       frame->states[1]};
+    for (size_t i = 0; i < ORL_COUNT(targets); i++)
+        if (targets[i])
+            orl_tex_clear(targets[i], 0);
+}
+
+enum orl_result orl_gather_underpaint(const struct frame *frame)
+{
+    const struct proxy *proxy = frame->proxy;
+    if (!frame->progressive || !frame->photos->were_absent || !proxy->kind->color ||
+        !frame->normals)
+        return ORL_OK;
+    orl_pass_begin(frame->gpu, "gather");
+    const struct paint_into into = {frame->picture,
+                                    frame->finishes ? frame->fill->level[0] : NULL, true};
+    enum orl_result result = orl_proxy_color(frame, &into);
+    orl_pass_end(frame->gpu);
+    return result;
+}
+
+static enum orl_result paint_gather(struct frame *frame)
+{
+    int sweeps = frame->radiance ? 1 : frame->params->combine->sweeps;
+    orl_gather_clear(frame);
+    enum orl_result result =
+        frame->params->select->choose(frame, (size_t)frame->photos->slot_count);
+    if (result == ORL_OK && frame->progressive)
+        result = orl_progressive_admit(frame, reads_depth(frame));
+    for (int sweep = 0; result == ORL_OK && sweep < sweeps; sweep++)
+        result = sweep_over(frame, sweep);
+    return result == ORL_OK ? orl_gather_underpaint(frame) : result;
+}
+
+const struct orl_combine orl_combine_mean = {"mean", .sweeps = 1};
+const struct orl_painter orl_paint_gather = {
+    .name = "gather", .needs = "", .reads_normals = reads_normals, .paint = paint_gather};
+
+// --- a painter without photographs ---
+
+static enum orl_result paint_points(struct frame *frame)
+{
+    orl_pass_begin(frame->gpu, "gather");
+    orl_gather_clear(frame);
+    const struct paint_into into = {.picture = frame->picture};
+    enum orl_result result = orl_proxy_color(frame, &into);
+    orl_pass_end(frame->gpu);
+    return result;
+}
+
+// Splats show where they are in front, as the normal's w tells.
+static bool always(const struct frame *frame)
+{
+    (void)frame;
+    return true;
+}
+
+const struct orl_painter orl_paint_points = {
+    .name = "points", .needs = "", .reads_normals = always, .paint = paint_points};

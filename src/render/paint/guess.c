@@ -1,0 +1,107 @@
+#include "render/paint/guess.h"
+
+#include "render/paint/gather.h"
+
+enum { COSTS = 3, SUMS = 4 }; // storage bindings of shaders/guess
+
+static int plane_count(const struct frame *frame)
+{
+    return (int)(frame->params->guess_depths + 0.5f);
+}
+
+static int cells(int pixels)
+{
+    return (pixels + GUESS_CELL - 1) / GUESS_CELL;
+}
+
+static size_t cost_bytes(const struct frame *frame)
+{
+    const struct orl_camera *camera = &frame->view->camera;
+    return (size_t)cells(camera->width) * (size_t)cells(camera->height) *
+           (size_t)plane_count(frame) * sizeof(float);
+}
+
+bool orl_guess_applies(const struct frame *frame)
+{
+    return orl_frame_guesses(frame) && plane_count(frame) > 1 &&
+           cost_bytes(frame) <= orl_gpu_caps(frame->gpu)->max_storage_block;
+}
+
+void orl_guess_finish(struct orl_gpu *gpu, struct guess *guess)
+{
+    orl_buf_destroy(gpu, &guess->costs);
+    orl_buf_destroy(gpu, &guess->sums);
+    orl_tex_destroy(gpu, &guess->estimated);
+    orl_tex_destroy(gpu, &guess->picked);
+}
+
+static enum orl_result resize_cells(struct orl_gpu *gpu, const char *tag, int width, int height,
+                                    struct orl_tex **tex)
+{
+    const struct orl_tex *old = *tex;
+    if (old && old->params.width == width && old->params.height == height)
+        return ORL_OK;
+    orl_tex_destroy(gpu, tex);
+    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height,
+                                                        .format = GL_R32F, .tag = tag}, tex);
+}
+
+enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
+{
+    struct orl_gpu *gpu = frame->gpu;
+    int width = cells(frame->view->camera.width), height = cells(frame->view->camera.height);
+    size_t bytes = cost_bytes(frame);
+    if (!orl_guess_applies(frame))
+        return ORL_OK;
+    enum orl_result result = orl_make_room(gpu, "costs of depths", bytes, &guess->costs);
+    ORL_THEN(result, orl_make_room(gpu, "costs of paths", bytes, &guess->sums));
+    ORL_THEN(result, resize_cells(gpu, "estimated depth", width, height, &guess->estimated));
+    ORL_THEN(result, resize_cells(gpu, "picked depth", width, height, &guess->picked));
+    return result;
+}
+
+static void run(const struct frame *frame, const char *file, const char *defines, int width,
+                int height, struct orl_dispatch *d)
+{
+    d->prog = orl_gather_prog(frame, file, NULL, defines);
+    orl_pixel_groups(width, height, d->groups);
+    orl_gpu_dispatch(frame->gpu, d);
+}
+
+// Semi-global matching: each line of cells is one invocation.
+static void smooth(const struct frame *frame, int width, int height, struct orl_dispatch *d)
+{
+    static const char *const along[] = {"ALONG 0", "ALONG 1", "ALONG 2", "ALONG 3"};
+    for (int k = 0; k < 4; k++) {
+        d->prog = orl_gather_prog(frame, "guess/smooth.comp", NULL, along[k]);
+        d->groups[0] = orl_groups((size_t)(k < 2 ? height : width), GUESS_LINES);
+        d->groups[1] = 1;
+        orl_gpu_dispatch(frame->gpu, d);
+    }
+}
+
+void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choice,
+                     const struct gather_block *block)
+{
+    const struct guess *guess = frame->guess;
+    double distance = frame->scene->photo_distance > 0 ? frame->scene->photo_distance : 1;
+    struct gather_block planes = *block;
+    planes.planes = plane_count(frame);
+    planes.min_inverse = (float)(1 / (ORL_GUESS_FARTHEST * distance));
+    int width = guess->picked->params.width, height = guess->picked->params.height;
+    struct orl_dispatch d = *choice;
+    d.params = &planes;
+    d.bufs[COSTS].buf = guess->costs;
+    d.bufs[SUMS].buf = guess->sums;
+    d.images[0].access = GL_READ_WRITE;
+    d.images[1] = (struct orl_image_binding){guess->estimated, 0, GL_READ_WRITE};
+    d.images[2] = (struct orl_image_binding){guess->picked, 0, GL_READ_WRITE};
+    d.barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
+    orl_pass_begin(frame->gpu, "guess");
+    run(frame, "guess/cost.comp", NULL, width, height, &d);
+    smooth(frame, width, height, &d);
+    run(frame, "guess/pick.comp", NULL, width, height, &d);
+    run(frame, "guess/apply.comp", NULL, frame->surface.width, frame->surface.height, &d);
+    orl_gpu_dispatch(frame->gpu, choice);
+    orl_pass_end(frame->gpu);
+}

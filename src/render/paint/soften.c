@@ -1,0 +1,53 @@
+#include "render/paint/soften.h"
+
+#include "shared/render_blocks.h"
+
+// The largest blur as a share of the picture's longer side: with a larger one, holes of a surface would
+// take the colours of what is beside it.
+static const float BLUR_MAX = 0.012f;
+
+void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
+{
+    orl_tex_destroy(gpu, &soften->guesses);
+}
+
+float orl_soften_max(int width, int height)
+{
+    return BLUR_MAX * (float)(width > height ? width : height);
+}
+
+enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
+                                  int height)
+{
+    const struct orl_tex *old = soften->guesses;
+    struct orl_tex_params params = {.width = (width + 1) / 2, .height = (height + 1) / 2,
+                                    .levels = 1, .linear = true, .format = GL_RGBA32F,
+                                    .tag = "guesses"};
+    // A texel of the coarsest level is as large as the largest blur, or as the whole picture.
+    int longer = width > height ? width : height;
+    float most = orl_soften_max(width, height);
+    while ((float)(1 << params.levels) < most && longer >> (params.levels + 1) > 0)
+        params.levels++;
+    if (old && old->params.width == params.width && old->params.height == params.height &&
+        old->params.levels == params.levels)
+        return ORL_OK;
+    orl_tex_destroy(gpu, &soften->guesses);
+    return orl_tex_create(gpu, &params, &soften->guesses);
+}
+
+void orl_soften_prepare(const struct frame *frame)
+{
+    struct orl_tex *guesses = frame->soften->guesses;
+    int width = guesses->params.width, height = guesses->params.height;
+    if (frame->radiance) {
+        struct image_block block = {.image_size = {width, height}};
+        struct orl_dispatch d = {
+            .prog = orl_prog_get(frame->gpu, "fill/fill_seed.comp", NULL, "SEED_GUESSES"),
+            .params = &block, .params_size = sizeof block,
+            .images = {{frame->picture, 0, GL_READ_ONLY}, {guesses, 0, GL_WRITE_ONLY},
+                       {frame->trusted, 0, GL_READ_ONLY}}};
+        orl_pixel_groups(width, height, d.groups);
+        orl_gpu_dispatch(frame->gpu, &d);
+    }
+    orl_tex_make_mipmaps(guesses, 0);
+}

@@ -1,0 +1,110 @@
+#include "render/paint/tiled.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "render/paint/fill.h"
+#include "render/paint/gather.h"
+#include "render/paint/guess.h"
+#include "render/paint/soften.h"
+#include "render/photos/photos.h"
+#include "render/photos/progressive.h"
+
+// Makes room for the lists of photographs of each tile and of unfinished work groups.
+static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
+{
+    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
+    struct gather *g = frame->gather;
+    enum orl_result result = orl_make_room(frame->gpu, "photographs of tiles",
+                                           tiles * CANDIDATES * sizeof(int), &g->tile_lists);
+    if (result == ORL_OK)
+        result = orl_make_room(frame->gpu, "groups with unfinished pixels",
+                               sizeof nothing + 8 * groups, &g->unfinished);
+    if (result != ORL_OK)
+        return result;
+    orl_buf_fill(g->unfinished, 0);
+    orl_buf_write(g->unfinished, 0, sizeof nothing, nothing);
+    return ORL_OK;
+}
+
+// For the passes that ask photographs. Without a backdrop that rests they lose no time.
+static const char *rest_define(const struct frame *frame)
+{
+    return orl_frame_rests(frame) ? "RESTS 1\n" : "";
+}
+
+// Paints from the photographs of each tile. `d`: the dispatch that has listed them.
+static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
+{
+    char defines[32];
+    struct gather_slots slots;
+    orl_gather_slots(frame, &slots);
+    // The number of photographs per pixel is part of the program, so that none is sampled in vain.
+    snprintf(defines, sizeof defines, "%sKEPT %d", rest_define(frame), kept);
+    d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
+    d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
+    d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
+    d.images[3] = (struct orl_image_binding){frame->soften->guesses, 0, GL_WRITE_ONLY};
+    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                GL_COMMAND_BARRIER_BIT;
+    // One invocation handles 2x2 pixels.
+    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
+    orl_tex_clear(frame->soften->guesses, 0);
+    orl_pass_begin(frame->gpu, "gather");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+}
+
+static enum orl_result paint_chosen(const struct frame *frame)
+{
+    struct gather *g = frame->gather;
+    size_t across = orl_groups((size_t)frame->surface.width, orl_tile_side(frame));
+    size_t down = orl_groups((size_t)frame->surface.height, orl_tile_side(frame));
+    unsigned groups[3];
+    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, groups);
+    enum orl_result result = make_lists(frame, across * down, (size_t)groups[0] * groups[1]);
+    if (result != ORL_OK)
+        return result;
+    if (frame->chosen_count == 0 && !frame->progressive) {
+        orl_tex_clear(frame->picture, 0);
+        return ORL_OK;
+    }
+    struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
+    struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
+                                                     rest_define(frame)),
+                             .params = &block, .params_size = sizeof block,
+                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
+                             .textures = {frame->photos->color, frame->photos->depth,
+                                          [ORL_PHOTO_CHROMA] = frame->photos->chroma},
+                             .images = {{frame->surface.depth, 0, GL_READ_ONLY},
+                                        [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
+                             .groups = {orl_groups(across, 8), orl_groups(down, 8)},
+                             .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
+    orl_pass_begin(frame->gpu, "choose");
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
+    if (orl_guess_applies(frame))
+        orl_guess_depth(frame, &d, &block);
+    gather_tiles(frame, block.kept, d);
+    return ORL_OK;
+}
+
+static enum orl_result paint(struct frame *frame)
+{
+    if (frame->radiance)
+        return orl_paint_gather.paint(frame);
+    // Depth is always needed: the selection per tile tests occlusion even if the pixels do not.
+    enum orl_result result =
+        frame->params->select->choose(frame, (size_t)frame->photos->slot_count);
+    if (result == ORL_OK && frame->progressive)
+        result = orl_progressive_admit(frame, true);
+    for (size_t i = 0; !frame->progressive && result == ORL_OK && i < frame->chosen_count; i++)
+        result = orl_photos_require(frame, frame->chosen[i], true);
+    ORL_THEN(result, paint_chosen(frame));
+    return result == ORL_OK ? orl_gather_underpaint(frame) : result;
+}
+
+const struct orl_painter orl_paint_tiled = {
+    .name = "tiled", .needs = "select=preselect weight=lumigraph combine=robust",
+    .finishes = true, .paint = paint,
+};

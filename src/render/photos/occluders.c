@@ -1,0 +1,59 @@
+#include "render/photos/occluders.h"
+
+#include <stdlib.h>
+
+#include "io/picture.h"
+#include "shared/render_blocks.h"
+
+// Depth of all occluders, as a share of the usual distance to what photographs see: before all that
+// a view can show.
+static const float OCCLUDER_DISTANCE = 0.01f;
+
+enum orl_result orl_occluders_read(const struct orl_log *log, const struct orl_scene *scene,
+                                   size_t photo, struct orl_image *mask)
+{
+    *mask = (struct orl_image){0};
+    bool time_step = scene->frame_count > 0 && scene->frame >= 0;
+    if (!(scene->photos[photo].occluded > 0) || time_step)
+        return ORL_OK;
+    char *path = orl_scene_occluders_path(log, scene, photo);
+    enum orl_result result = path ? orl_picture_read(log, path, 1, mask) : ORL_ERR_MEMORY;
+    free(path);
+    return result;
+}
+
+static void put(const struct frame *frame, size_t photo, const int kept[2], struct orl_tex *mask)
+{
+    const struct photos *photos = frame->photos;
+    struct occluders_block block = {
+        .map_size = {kept[0], kept[1]},
+        .occluder_depth = OCCLUDER_DISTANCE * (float)photos->scene->photo_distance};
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(frame->gpu, "proxy/photo_occluders.comp", NULL, NULL),
+        .params = &block, .params_size = sizeof block, .textures = {mask},
+        .images = {{photos->depth, 0, GL_WRITE_ONLY}},
+        .image_layers = {photos->states[photo].slot + 1},
+        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_pixel_groups(kept[0], kept[1], d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+}
+
+enum orl_result orl_occluders_put(const struct frame *frame, size_t photo, const int kept[2])
+{
+    struct orl_image image;
+    struct orl_tex *mask = NULL;
+    enum orl_result result = orl_occluders_read(orl_gpu_log(frame->gpu), frame->photos->scene,
+                                                photo, &image);
+    if (result != ORL_OK || image.width == 0)
+        return result;
+    const struct orl_tex_params params = {.width = image.width, .height = image.height,
+                                          .format = GL_R8, .tag = "occluders"};
+    result = orl_tex_create(frame->gpu, &params, &mask);
+    if (result == ORL_OK) {
+        orl_tex_write(mask, 0, 0, GL_RED, GL_UNSIGNED_BYTE, image.u8);
+        put(frame, photo, kept, mask);
+    }
+    orl_tex_destroy(frame->gpu, &mask);
+    orl_image_finish(&image);
+    return result;
+}

@@ -1,0 +1,262 @@
+// The point cloud on the device, in Morton order and in blocks that can be skipped or thinned.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/proxy/cloud.h"
+#include "render/proxy/cloud_pages.h"
+#include "scene/point_blocks.h"
+
+enum {
+    // 128 MiB of positions, half of the 65535 work groups that one dispatch may have. More chunks
+    // would cost a resolve pass each.
+    CHUNK_POINTS = 16 << 20,
+    BLOCK = ORL_BLOCK_POINTS,
+    PARTS = BLOCK / ORL_ITEM_POINTS,
+};
+
+// A chunk in host memory. Points are stored part by part: the first parts of all blocks, then the
+// second parts, and so on. When blocks are thinned, the points that are read are contiguous.
+struct host_chunk {
+    uint32_t (*points)[2];
+    float (*blocks)[ORL_BLOCK_VEC4S][4];
+    size_t block_count;
+};
+
+struct buffer {
+    const char *tag;
+    size_t size;
+    const void *data;
+    struct orl_buf **buf;
+    GLenum format;
+    struct orl_tex **texels;
+};
+
+static enum orl_result make_buffer(struct orl_gpu *gpu, const struct buffer *b)
+{
+    enum orl_result result =
+        orl_buf_create(gpu, ORL_OWNER_POINTS, b->tag, b->size, b->data, b->buf);
+    return result == ORL_OK ? orl_tex_view_buffer(gpu, *b->buf, b->format, b->texels) : result;
+}
+
+static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
+                                    const struct host_chunk *host)
+{
+    size_t blocks = host->block_count;
+    const struct buffer rows[] = {
+        {"points", blocks * BLOCK * 8, host->points, &chunk->points, GL_RG32UI,
+         &chunk->point_texels},
+        {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
+         &chunk->block_texels},
+        {"point block enlargement", blocks * 4, NULL, &chunk->enlarged, GL_R32F,
+         &chunk->enlarged_texels},
+        {"point list", blocks * PARTS * 4, NULL, &chunk->items, GL_R32UI, &chunk->item_texels},
+        {"point list arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
+    };
+    enum orl_result result = ORL_OK;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++)
+        result = make_buffer(gpu, &rows[i]);
+    return result;
+}
+
+// data: sRGB of each point of the chunk.
+static enum orl_result make_colors(struct orl_gpu *gpu, struct point_chunk *chunk,
+                                   uint8_t (*data)[3])
+{
+    const struct buffer row = {"point colours", (size_t)chunk->count * sizeof *data, data,
+                               &chunk->colors, GL_R8UI, &chunk->color_texels};
+    return make_buffer(gpu, &row);
+}
+
+// Where point i of a block is stored in its chunk.
+static size_t place_in_chunk(size_t i, size_t block, size_t block_count)
+{
+    return (i / ORL_ITEM_POINTS * block_count + block) * ORL_ITEM_POINTS + i % ORL_ITEM_POINTS;
+}
+
+// order: BLOCK entries of a block.
+static void fill_block(const struct orl_points *points, const uint32_t *order, size_t at,
+                       struct host_chunk *host)
+{
+    struct point_block block;
+    orl_point_block_make(points, order, &block);
+    for (size_t i = 0; i < BLOCK; i++) {
+        size_t to = place_in_chunk(i, at, host->block_count);
+        memcpy(host->points[to], block.codes[i].geometry, sizeof block.codes[i].geometry);
+    }
+    memcpy(host->blocks[at], block.texels, sizeof block.texels);
+}
+
+static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
+                                    const uint32_t *order, struct point_chunk *chunk)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct host_chunk host = {.block_count = (size_t)chunk->block_count};
+    host.points = orl_array(log, host.block_count * BLOCK, sizeof *host.points);
+    host.blocks = orl_array(log, host.block_count, sizeof *host.blocks);
+    enum orl_result result = host.points && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t b = 0; result == ORL_OK && b < host.block_count; b++)
+        fill_block(points, order + b * BLOCK, b, &host);
+    ORL_THEN(result, make_buffers(gpu, chunk, &host));
+    free(host.points);
+    free(host.blocks);
+    return result;
+}
+
+// order: of the chunk's points.
+static enum orl_result upload_colors(struct orl_gpu *gpu, const struct orl_points *points,
+                                     const uint32_t *order, struct point_chunk *chunk)
+{
+    size_t count = (size_t)chunk->count;
+    uint8_t (*colors)[3] = orl_array(orl_gpu_log(gpu), count, sizeof *colors);
+    if (!colors)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
+        size_t to = place_in_chunk(i % BLOCK, i / BLOCK, (size_t)chunk->block_count);
+        if (order[i] != UINT32_MAX)
+            memcpy(colors[to], points->color[order[i]], sizeof *colors);
+    }
+    enum orl_result result = make_colors(gpu, chunk, colors);
+    free(colors);
+    return result;
+}
+
+// The order along the points' own cube.
+static enum orl_result find_order(const struct orl_log *log, const struct orl_points *points,
+                                  uint32_t **order, size_t *count)
+{
+    struct point_cube cube;
+    *order = NULL;
+    enum orl_result result = orl_point_cube_find(log, points, &cube);
+    return result == ORL_OK ? orl_point_order(log, points, &cube, order, count) : result;
+}
+
+size_t orl_cloud_chunk_points(const struct orl_gpu *gpu)
+{
+    size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / 3 / BLOCK * BLOCK; // of colours
+    return most < CHUNK_POINTS ? most : CHUNK_POINTS;
+}
+
+enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points *points,
+                              uint32_t **map, size_t *count)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    size_t most = orl_cloud_chunk_points(gpu);
+    uint32_t *order = NULL;
+    *map = NULL;
+    enum orl_result result = find_order(log, points, &order, count);
+    if (result == ORL_OK)
+        *map = orl_array(log, *count, sizeof **map);
+    if (!*map || !order) {
+        free(order);
+        return result == ORL_OK ? ORL_ERR_MEMORY : result;
+    }
+    for (size_t i = 0; i < *count; i++) {
+        size_t first = i / most * most, here = *count - first < most ? *count - first : most;
+        size_t block = (i - first) / BLOCK, blocks = here / BLOCK;
+        (*map)[first + place_in_chunk(i % BLOCK, block, blocks)] = order[i];
+    }
+    free(order);
+    return ORL_OK;
+}
+
+enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
+                               struct cloud *cloud)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    *cloud = (struct cloud){.points = points};
+    if (points->count > INT32_MAX - BLOCK)
+        return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are too many", points->count);
+    size_t most = orl_cloud_chunk_points(gpu);
+    uint32_t *order = NULL;
+    size_t count = 0;
+    enum orl_result result = find_order(log, points, &order, &count);
+    if (result == ORL_OK) {
+        cloud->chunks = orl_array(log, count / most + 1, sizeof *cloud->chunks);
+        result = cloud->chunks ? ORL_OK : ORL_ERR_MEMORY;
+    }
+    // An empty cloud is one empty chunk, so that passes that run per chunk still run.
+    for (size_t first = 0; result == ORL_OK && (first < count || first == 0); first += most) {
+        struct point_chunk *chunk = &cloud->chunks[cloud->chunk_count++];
+        size_t here = count - first < most ? count - first : most;
+        chunk->block_count = (int)(here / BLOCK);
+        chunk->first = (int)first;
+        chunk->count = chunk->block_count * BLOCK;
+        result = upload_chunk(gpu, points, order + first, chunk);
+    }
+    free(order);
+    if (result != ORL_OK)
+        orl_cloud_finish(gpu, cloud);
+    return result;
+}
+
+enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
+{
+    uint32_t *order = NULL;
+    size_t count = 0;
+    if (cloud->chunks[cloud->chunk_count - 1].color_texels)
+        return ORL_OK;
+    enum orl_result result = find_order(orl_gpu_log(gpu), cloud->points, &order, &count);
+    for (size_t i = 0; result == ORL_OK && i < cloud->chunk_count; i++) {
+        struct point_chunk *chunk = &cloud->chunks[i];
+        if (!chunk->color_texels) // the memory may have ended before
+            result = upload_colors(gpu, cloud->points, order + chunk->first, chunk);
+    }
+    free(order);
+    return result;
+}
+
+enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
+                                      struct cloud *cloud)
+{
+    struct point_chunk *chunk = cloud->chunks = orl_array(orl_gpu_log(gpu), 1, sizeof *chunk);
+    if (!chunk)
+        return ORL_ERR_MEMORY;
+    cloud->chunk_count = 1;
+    chunk->block_count = (int)block_count;
+    chunk->count = chunk->block_count * BLOCK;
+    enum orl_result result =
+        make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count});
+    return result == ORL_OK ? make_colors(gpu, chunk, NULL) : result;
+}
+
+void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
+{
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        struct point_chunk *c = &cloud->chunks[i];
+        struct orl_tex **const views[] = {&c->point_texels, &c->color_texels, &c->block_texels,
+                                          &c->enlarged_texels, &c->item_texels, &c->arg_texels};
+        struct orl_buf **const bufs[] = {&c->points, &c->colors, &c->blocks, &c->enlarged,
+                                         &c->items, &c->args};
+        for (size_t k = 0; k < ORL_COUNT(views); k++)
+            orl_tex_destroy(gpu, views[k]);
+        for (size_t k = 0; k < ORL_COUNT(bufs); k++)
+            orl_buf_destroy(gpu, bufs[k]);
+    }
+    free(cloud->chunks);
+    orl_cloud_pages_finish(&cloud->pages);
+    memset(cloud, 0, sizeof *cloud);
+}
+
+void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block)
+{
+    static const uint32_t nothing[4] = {0, 1, 1, 0};
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        const struct point_chunk *chunk = &cloud->chunks[i];
+        block->point_count = chunk->count;
+        block->first_point = chunk->first;
+        orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
+        struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/splat_cull.comp", NULL, NULL),
+                                 .params = block, .params_size = sizeof *block,
+                                 .bufs = {{.buf = chunk->args}, {.buf = chunk->items},
+                                          {.buf = chunk->enlarged}},
+                                 .images = {{chunk->block_texels, 0, GL_READ_ONLY}},
+                                 .groups = {orl_groups((size_t)chunk->block_count,
+                                                       ORL_POINT_GROUP)},
+                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                            GL_SHADER_STORAGE_BARRIER_BIT |
+                                            GL_COMMAND_BARRIER_BIT};
+        orl_gpu_dispatch(gpu, &d);
+    }
+}

@@ -1,0 +1,196 @@
+// A triangle mesh as the proxy (orl_scene_mesh_path), drawn by the graphics pipeline.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "gpu/raster.h"
+#include "render/frame/frame.h"
+#include "render/proxy/mesh_proxy.h"
+#include "render/proxy/raster_target.h"
+#include "shared/render_blocks.h"
+
+void orl_mesh_vertices(const void *handle, const struct orl_scene *scene,
+                       const float (**out)[3], size_t *count)
+{
+    const struct mesh_state *state = handle;
+    (void)scene;
+    *out = (const float(*)[3])state->mesh.position;
+    *count = state->mesh.vertex_count;
+}
+
+// Colours of three bytes as vertex inputs of four.
+static enum orl_result upload_colors(struct orl_gpu *gpu, struct mesh_state *state)
+{
+    const struct orl_mesh *mesh = &state->mesh;
+    if (!mesh->color)
+        return ORL_OK;
+    uint8_t (*padded)[4] = orl_array(orl_gpu_log(gpu), mesh->vertex_count, sizeof *padded);
+    if (!padded)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        memcpy(padded[i], mesh->color[i], sizeof *mesh->color);
+    enum orl_result result =
+        orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh colours",
+                       mesh->vertex_count * sizeof *padded, padded, &state->colors);
+    free(padded);
+    return result;
+}
+
+enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *state)
+{
+    const struct orl_mesh *mesh = &state->mesh;
+    memcpy(state->low, mesh->position[0], sizeof state->low);
+    memcpy(state->high, mesh->position[0], sizeof state->high);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++) {
+            state->low[k] = fminf(state->low[k], mesh->position[i][k]);
+            state->high[k] = fmaxf(state->high[k], mesh->position[i][k]);
+        }
+    enum orl_result result =
+        orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh vertices", mesh->vertex_count * sizeof *mesh->position,
+                       mesh->position, &state->vertices);
+    if (result == ORL_OK)
+        result = orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh triangles",
+                                mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle,
+                                &state->indices);
+    return result == ORL_OK ? upload_colors(gpu, state) : result;
+}
+
+void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state)
+{
+    orl_buf_destroy(gpu, &state->vertices);
+    orl_buf_destroy(gpu, &state->indices);
+    orl_buf_destroy(gpu, &state->colors);
+    orl_mesh_finish(&state->mesh);
+}
+
+static void destroy(struct orl_gpu *gpu, void **handle)
+{
+    struct mesh_state *state = *handle;
+    if (!state)
+        return;
+    orl_mesh_state_finish(gpu, state);
+    free(state);
+    *handle = NULL;
+}
+
+static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
+                            struct mesh_state *state)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    char *path = orl_scene_mesh_path(log, scene);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    orl_mesh_state_finish(gpu, state);
+    state->time_step = scene->frame;
+    if (result == ORL_OK && !orl_path_is_file(path))
+        result = orl_fail(log, ORL_ERR_NOT_FOUND,
+                          "%s: not there; --mesh of oriel prepare or oriel import makes one", path);
+    ORL_THEN(result, orl_mesh_read(log, path, &state->mesh));
+    ORL_THEN(result, orl_mesh_state_upload(gpu, state));
+    free(path);
+    return result;
+}
+
+static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              size_t max_bytes, void **out)
+{
+    struct mesh_state *state = orl_array(orl_gpu_log(gpu), 1, sizeof *state);
+    (void)max_bytes; // a mesh is on the device as a whole
+    enum orl_result result = state ? load(gpu, scene, state) : ORL_ERR_MEMORY;
+    *out = state;
+    if (result != ORL_OK)
+        destroy(gpu, out);
+    return result;
+}
+
+// Time steps of a sequence may have meshes of their own.
+static enum orl_result update(const struct frame *frame, void *handle, bool *changed)
+{
+    struct mesh_state *state = handle;
+    *changed = state->time_step != frame->scene->frame;
+    return *changed ? load(frame->gpu, frame->scene, state) : ORL_OK;
+}
+
+void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view, float *near,
+                    float *far)
+{
+    double low = INFINITY, high = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double world[3], q[3];
+        for (int k = 0; k < 3; k++)
+            world[k] = (double)(corner >> k & 1 ? state->high[k] : state->low[k]);
+        orl_pose_apply(&view->cam_from_world, world, q);
+        low = fmin(low, q[2]);
+        high = fmax(high, q[2]);
+    }
+    // Where the camera stands within the box, or has it behind, any range ahead will do.
+    *far = high > 0 ? (float)(1.001 * high) : 1;
+    *near = (float)fmax(0.999 * low, 1e-4 * (double)*far);
+}
+
+static struct mesh_block block_of(const struct mesh_state *state, const struct orl_view *view,
+                                  const struct raster_target *target)
+{
+    struct mesh_block block = {.view_size = {target->width, target->height}};
+    orl_mesh_range(state, view, &block.depth_near, &block.depth_far);
+    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
+    orl_set_focal(&view->camera, block.focal);
+    return block;
+}
+
+void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
+                   const struct orl_render_params *params, bool normals, void *memory,
+                   struct surface *surface)
+{
+    const struct mesh_state *state = handle;
+    struct raster_target *target = memory;
+    const struct mesh_block block = block_of(state, view, target);
+    (void)params, (void)normals; // nothing to choose, and normals come along
+    const struct orl_raster raster = {
+        .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh.frag", NULL),
+        .params = &block, .params_size = sizeof block,
+        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
+                    .type = GL_FLOAT}},
+        .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
+        .targets = {target->depth, target->normal}, .depth = target->test,
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
+    };
+    orl_pass_begin(gpu, "mesh");
+    orl_gpu_raster(gpu, &raster);
+    orl_pass_end(gpu);
+    *surface = (struct surface){.width = target->width, .height = target->height,
+                                .depth = target->depth, .normal = target->normal};
+}
+
+// Draws the mesh again, with the colours of its vertices. Without colours it paints nothing.
+static void color(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
+                  const void *memory, const struct paint_into *into)
+{
+    const struct mesh_state *state = handle;
+    const struct raster_target *target = memory;
+    const struct mesh_block block = block_of(state, view, target);
+    // The pipeline clears the picture, so samples of photographs could not be kept.
+    if (!state->colors || into->only_unpainted)
+        return;
+    const struct orl_raster raster = {
+        .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh_color.frag", "COLORS"),
+        .params = &block, .params_size = sizeof block,
+        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
+                    .type = GL_FLOAT},
+                   {.buf = state->colors, .stride = 4, .components = 4,
+                    .type = GL_UNSIGNED_BYTE}},
+        .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
+        .targets = {into->picture}, .depth = target->test,
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
+    };
+    orl_gpu_raster(gpu, &raster);
+}
+
+const struct orl_proxy_kind orl_proxy_mesh = {
+    .name = "mesh", .create = create, .update = update, .vertices = orl_mesh_vertices,
+    .destroy = destroy, .resize = orl_raster_target_resize,
+    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
+    .draw = orl_mesh_draw, .color = color,
+};

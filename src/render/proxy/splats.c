@@ -1,0 +1,374 @@
+// Reconstructs depth from points: compute splatting, then pull-push (Airieau 2012, 5.1).
+#include "render/proxy/splats.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/frame/frame.h"
+#include "render/proxy/cloud_pages.h"
+
+static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
+                              size_t max_bytes, void **state)
+{
+    struct cloud *cloud = orl_array(orl_gpu_log(gpu), 1, sizeof *cloud);
+    enum orl_result result =
+        !cloud       ? ORL_ERR_MEMORY
+        : scene->lod ? orl_cloud_pages_init(gpu, scene->lod, max_bytes, cloud)
+                     : orl_cloud_init(gpu, &scene->points, cloud);
+    if (result != ORL_OK) {
+        free(cloud);
+        cloud = NULL;
+    }
+    if (cloud)
+        cloud->near = (float)scene->near_distance;
+    *state = cloud;
+    return result;
+}
+
+static void vertices(const void *state, const struct orl_scene *scene, const float (**out)[3],
+                     size_t *count)
+{
+    (void)state;
+    *out = (const float(*)[3])scene->points.position;
+    *count = scene->points.count;
+}
+
+static void destroy(struct orl_gpu *gpu, void **state)
+{
+    if (*state)
+        orl_cloud_finish(gpu, *state);
+    free(*state);
+    *state = NULL;
+}
+
+// Number of pyramid levels, down to a size of one or two pixels. At least two, since level 0 is
+// made together with level 1 and pushed from it.
+static int pyramid_levels(int width, int height)
+{
+    int levels = 2;
+    for (int side = width > height ? width : height; side > 2; side /= 2)
+        levels++;
+    return levels < PYRAMID_LEVELS_MAX ? levels : PYRAMID_LEVELS_MAX;
+}
+
+static size_t target_bytes(const void *state, int width, int height)
+{
+    const struct cloud *cloud = state;
+    // Bytes per pixel: three words of splats, 8 bytes of level 0, two depths, a normal, and 24
+    // bytes of the coarser levels; four more words if there are several chunks.
+    size_t chunks = cloud->chunk_count < 2 ? 0 : 16;
+    return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3 + chunks);
+}
+
+// Each level is half as large as the one before, rounded up. Loads outside read as empty.
+static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
+{
+    enum orl_result result = ORL_OK;
+    int width = t->width, height = t->height;
+    for (int i = 1; result == ORL_OK && i < t->levels; i++) {
+        width = (width + 1) / 2;
+        height = (height + 1) / 2;
+        struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
+                                        .tag = "surfel pyramid"};
+        result = orl_tex_create(gpu, &params, &t->surfel_a[i]);
+        params.format = GL_RG32UI;
+        ORL_THEN(result, orl_tex_create(gpu, &params, &t->surfel_b[i]));
+    }
+    return result;
+}
+
+static void finish_target(struct orl_gpu *gpu, struct splat_target *target)
+{
+    for (int i = 0; i < PYRAMID_LEVELS_MAX; i++) {
+        orl_tex_destroy(gpu, &target->surfel_a[i]);
+        orl_tex_destroy(gpu, &target->surfel_b[i]);
+    }
+    struct orl_tex **const textures[] = {
+        &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
+        &target->chunk_splats, &target->pushed_depth, &target->depth, &target->normal,
+    };
+    for (size_t i = 0; i < ORL_COUNT(textures); i++)
+        orl_tex_destroy(gpu, textures[i]);
+    memset(target, 0, sizeof *target);
+}
+
+static enum orl_result make_target(struct orl_gpu *gpu, bool chunks, int width, int height,
+                                   struct splat_target *target)
+{
+    target->width = width;
+    target->height = height;
+    target->levels = pyramid_levels(width, height);
+    const struct {
+        const char *tag;
+        GLenum format;
+        struct orl_tex **tex;
+    } rows[] = {
+        {"splat depth", GL_R32UI, &target->splat_depth},
+        {"splat index", GL_R32UI, &target->splat_index},
+        {"splat layer", GL_R32UI, &target->splat_layer},
+        {"splats", GL_RG32UI, &target->splats},
+        {"pushed depth", GL_R32F, &target->pushed_depth},
+        {"proxy depth", GL_R32F, &target->depth},
+        {"proxy normal", GL_RGBA16F, &target->normal},
+        {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
+    };
+    size_t count = ORL_COUNT(rows) - (chunks ? 0 : 1);
+    enum orl_result result = make_pyramid(gpu, target);
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        struct orl_tex_params params = {.width = width, .height = height,
+                                        .format = rows[i].format, .tag = rows[i].tag};
+        result = orl_tex_create(gpu, &params, rows[i].tex);
+    }
+    return result;
+}
+
+static void free_target(struct orl_gpu *gpu, void **target)
+{
+    if (*target)
+        finish_target(gpu, *target);
+    free(*target);
+    *target = NULL;
+}
+
+static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width, int height,
+                              void **out)
+{
+    const struct cloud *cloud = state;
+    struct splat_target *target = *out;
+    if (target && target->width == width && target->height == height)
+        return ORL_OK;
+    free_target(gpu, out);
+    target = orl_array(orl_gpu_log(gpu), 1, sizeof *target);
+    *out = target;
+    enum orl_result result = target ? make_target(gpu, cloud->chunk_count > 1, width, height,
+                                                  target)
+                                    : ORL_ERR_MEMORY;
+    if (result != ORL_OK)
+        free_target(gpu, out);
+    return result;
+}
+
+// Where more fall into a pixel, splats are thinned and enlarged. 0: all are drawn.
+static float points_per_pixel(const struct orl_render_params *params)
+{
+    return params->every_point ? 0 : 4;
+}
+
+// params: NULL if nothing is drawn.
+static struct splat_block splat_params(const struct cloud *cloud, const struct orl_view *view,
+                                       const struct orl_render_params *params)
+{
+    struct splat_block block = {.view_size = {view->camera.width, view->camera.height},
+                                .near = cloud->near};
+    if (params) {
+        block.splat_scale = params->splat_scale;
+        block.front_layer = params->front_layer;
+        block.points_per_pixel = points_per_pixel(params);
+    }
+    orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
+    orl_set_focal(&view->camera, block.focal);
+    return block;
+}
+
+static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block,
+                  struct splat_target *t)
+{
+    orl_tex_fill(t->splat_depth, UINT32_MAX);
+    orl_tex_fill(t->splat_index, UINT32_MAX);
+    orl_tex_fill(t->splat_layer, 0);
+    orl_cloud_cull(gpu, cloud, block);
+    struct orl_prog *const passes[] = {orl_prog_get(gpu, "proxy/splat_depth.comp", NULL, NULL),
+                                       orl_prog_get(gpu, "proxy/splat_index.comp", NULL, NULL)};
+    for (size_t pass = 0; pass < ORL_COUNT(passes); pass++)
+        for (size_t i = 0; i < cloud->chunk_count; i++) {
+            const struct point_chunk *chunk = &cloud->chunks[i];
+            block->point_count = chunk->count;
+            block->first_point = chunk->first;
+            struct orl_dispatch d = {.prog = passes[pass], .params = block,
+                                     .params_size = sizeof *block,
+                                     .textures = {chunk->block_texels},
+                                     .images = {{chunk->point_texels, 0, GL_READ_ONLY},
+                                                {chunk->item_texels, 0, GL_READ_ONLY},
+                                                {chunk->arg_texels, 0, GL_READ_ONLY},
+                                                {t->splat_depth, 0, GL_READ_WRITE},
+                                                {t->splat_index, 0, GL_READ_WRITE},
+                                                {t->splat_layer, 0, GL_READ_WRITE}},
+                                     .indirect = chunk->args,
+                                     .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+            orl_gpu_dispatch(gpu, &d);
+        }
+}
+
+// Makes levels 0 and 1. Level 0 goes into `depth` without normals, else into the target's splats.
+static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block,
+                    const struct orl_tex *depth, bool normals, struct splat_target *t)
+{
+    bool chunks = cloud->chunk_count > 1;
+    struct orl_prog *prog = orl_prog_get(gpu, "proxy/splat_resolve.comp", NULL,
+                                         chunks ? normals ? "CHUNKS\nNORMALS" : "CHUNKS"
+                                         : normals ? "NORMALS" : NULL);
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        const struct point_chunk *chunk = &cloud->chunks[i];
+        block->point_count = chunk->count;
+        block->first_point = chunk->first;
+        struct orl_dispatch d = {.prog = prog, .params = block, .params_size = sizeof *block,
+                                 .bufs = {[2] = {.buf = chunk->enlarged}},
+                                 .textures = {chunk->block_texels},
+                                 .images = {{chunk->point_texels, 0, GL_READ_ONLY},
+                                            {t->splat_index, 0, GL_READ_ONLY},
+                                            {t->splat_layer, 0, GL_READ_ONLY},
+                                            {normals ? t->splats : depth, 0, GL_WRITE_ONLY},
+                                            {t->surfel_a[1], 0, GL_WRITE_ONLY},
+                                            {t->surfel_b[1], 0, GL_WRITE_ONLY},
+                                            {chunk->enlarged_texels, 0, GL_READ_ONLY}},
+                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+        if (chunks)
+            d.images[6] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
+        orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
+        orl_gpu_dispatch(gpu, &d);
+    }
+}
+
+static void set_level(struct pyramid_block *block, const struct orl_tex *written, int level)
+{
+    block->level_size[0] = written->params.width;
+    block->level_size[1] = written->params.height;
+    block->level_number = level;
+}
+
+static void pull(struct orl_gpu *gpu, struct pyramid_block *block,
+                 struct splat_target *t, int level)
+{
+    const struct orl_tex *coarse = t->surfel_a[level];
+    set_level(block, coarse, level);
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/pull.comp", NULL, NULL),
+                             .params = block, .params_size = sizeof *block,
+                             .images = {{t->surfel_a[level - 1], 0, GL_READ_ONLY},
+                                        {t->surfel_b[level - 1], 0, GL_READ_ONLY},
+                                        {coarse, 0, GL_WRITE_ONLY},
+                                        {t->surfel_b[level], 0, GL_WRITE_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+    orl_pixel_groups(coarse->params.width, coarse->params.height, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
+// Pushes into `level` from the coarser one. Level 0 is written as `depth`, and as the normal if it
+// is asked for.
+static void push(struct orl_gpu *gpu, struct pyramid_block *block,
+                 struct splat_target *t, int level, const struct orl_tex *depth, bool normals)
+{
+    const struct orl_tex *coarse = t->surfel_a[level + 1];
+    const char *defines = level ? NULL : normals ? "LAST\nNORMALS" : "LAST";
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/push.comp", NULL, defines),
+                             .params = block, .params_size = sizeof *block,
+                             .images = {{coarse, 0, GL_READ_ONLY},
+                                        {t->surfel_b[level + 1], 0, GL_READ_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_FETCH_BARRIER_BIT};
+    if (level) {
+        d.images[2] = (struct orl_image_binding){t->surfel_a[level], 0, GL_READ_WRITE};
+        d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY};
+    } else {
+        d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
+        d.images[3] = (struct orl_image_binding){depth, 0, GL_READ_WRITE};
+        d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY};
+    }
+    set_level(block, level ? t->surfel_a[level] : t->splats, level);
+    // One invocation handles one corner of the coarse level's pixels.
+    orl_pixel_groups(block->level_size[0] / 2 + 1, block->level_size[1] / 2 + 1, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
+static void drop_outliers(struct orl_gpu *gpu, struct pyramid_block *block, int least,
+                        struct splat_target *t)
+{
+    set_level(block, t->depth, 0);
+    block->min_support = least;
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, NULL),
+                             .params = block, .params_size = sizeof *block,
+                             .images = {{t->pushed_depth, 0, GL_READ_ONLY},
+                                        {t->depth, 0, GL_WRITE_ONLY},
+                                        {t->normal, 0, GL_WRITE_ONLY}},
+                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                                        GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_pixel_groups((t->width + 1) / 2, (t->height + 1) / 2, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+}
+
+static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int min_support,
+                      const struct orl_tex *depth, bool normals, struct splat_target *t)
+{
+    struct pyramid_block block = {0};
+    orl_set_focal(&view->camera, block.camera);
+    for (int i = 2; i < t->levels; i++)
+        pull(gpu, &block, t, i);
+    for (int i = t->levels - 2; i >= 0; i--)
+        push(gpu, &block, t, i, depth, normals);
+    if (min_support > 0)
+        drop_outliers(gpu, &block, min_support, t);
+}
+
+static enum orl_result bring(const void *state, const struct orl_view *view,
+                             const struct orl_render_params *params)
+{
+    const struct cloud *cloud = state;
+    return cloud->pages ? orl_cloud_pages_choose(cloud, view, points_per_pixel(params)) : ORL_OK;
+}
+
+static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
+                 const struct orl_render_params *params, bool normals, void *target,
+                 struct surface *surface)
+{
+    struct splat_target *t = target;
+    struct splat_block block = splat_params(state, view, params);
+    int min_support = (int)params->min_support;
+    const struct orl_tex *depth = min_support > 0 ? t->pushed_depth : t->depth;
+    orl_pass_begin(gpu, "splat");
+    splat(gpu, state, &block, t);
+    orl_pass_end(gpu);
+    orl_pass_begin(gpu, "pull-push");
+    resolve(gpu, state, &block, depth, normals, t);
+    pull_push(gpu, view, min_support, depth, normals, t);
+    orl_pass_end(gpu);
+    *surface = (struct surface){.width = t->width, .height = t->height, .depth = t->depth,
+                                .normal = t->normal};
+}
+
+static enum orl_result bring_colors(struct orl_gpu *gpu, void *state)
+{
+    return orl_cloud_bring_colors(gpu, state);
+}
+
+static void color(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
+                  const void *target, const struct paint_into *into)
+{
+    const struct cloud *cloud = state;
+    const struct splat_target *t = target;
+    struct splat_block block = splat_params(cloud, view, NULL);
+    const char *defines = !into->only_unpainted ? NULL : into->seeds ? "UNDER\nFINISHED" : "UNDER";
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        const struct point_chunk *chunk = &cloud->chunks[i];
+        block.point_count = chunk->count;
+        block.first_point = chunk->first;
+        struct orl_dispatch d = {
+            .prog = orl_prog_get(gpu, "proxy/points_color.comp", NULL, defines),
+            .params = &block, .params_size = sizeof block,
+            .images = {{chunk->color_texels, 0, GL_READ_ONLY},
+                       {t->splat_index, 0, GL_READ_ONLY},
+                       {t->normal, 0, GL_READ_ONLY},
+                       {into->picture, 0, into->only_unpainted ? GL_READ_WRITE : GL_WRITE_ONLY},
+                       {into->seeds, 0, GL_READ_WRITE}},
+            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
+        // One invocation handles 2x2 pixels.
+        orl_pixel_groups((t->width + 1) / 2, (t->height + 1) / 2, d.groups);
+        orl_gpu_dispatch(gpu, &d);
+    }
+}
+
+const struct orl_proxy_kind orl_proxy_splats = {
+    .name = "splats", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
+    .free_target = free_target, .target_bytes = target_bytes, .bring = bring, .draw = draw,
+    .bring_colors = bring_colors, .color = color,
+};
