@@ -1,11 +1,7 @@
 #include "render/compose.h"
 
 #include "render/frame/method.h"
-#include "render/paint/edges.h"
-#include "render/paint/fill.h"
-#include "render/paint/gather.h"
-#include "render/paint/soften.h"
-#include "render/papers/room.h"
+#include "render/paint/paint.h"
 
 static bool always(const struct frame *frame)
 {
@@ -31,7 +27,7 @@ static bool antialiases(const struct frame *frame)
 
 static void compose(const struct frame *frame)
 {
-    struct orl_buf *unfinished = frame->finishes ? frame->gather->unfinished : NULL;
+    struct orl_buf *unfinished = frame->finishes ? frame->paint->gather.unfinished : NULL;
     const char *defines = frame->finishes ? "FINISHED" : frame->radiance ? "RADIANCE" : NULL;
     struct image_block block = {
         .image_size = {frame->surface.width, frame->surface.height},
@@ -43,12 +39,12 @@ static void compose(const struct frame *frame)
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[2] = {.buf = unfinished}},
-                             .textures = {frame->soften->guesses},
+                             .textures = {frame->paint->soften.guesses},
                              .indirect = unfinished,
                              .images = {{frame->picture, 0, GL_READ_WRITE},
-                                        {frame->fill->level[0], 0, GL_READ_ONLY},
+                                        {frame->paint->fill.level[0], 0, GL_READ_ONLY},
                                         {frame->surface.depth, 0, GL_READ_ONLY},
-                                        {frame->trusted, 0, GL_READ_ONLY}},
+                                        {frame->paint->trusted, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
     // One invocation handles 2x2 pixels.
@@ -69,17 +65,16 @@ static void median(const struct frame *frame)
     struct orl_dispatch d = {
         .prog = orl_prog_get(frame->gpu, "fill/median.comp", NULL, holes ? "HOLES" : NULL),
         .params = &block, .params_size = sizeof block,
-        .images = {{frame->picture, 0, GL_READ_ONLY}, {frame->states[0], 0, GL_WRITE_ONLY},
+        .images = {{frame->picture, 0, GL_READ_ONLY}, {frame->paint->states[0], 0, GL_WRITE_ONLY},
                    {frame->surface.depth, 0, GL_READ_ONLY}},
         .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
-    orl_tex_copy_layer(frame->states[0], 0, frame->surface.width, frame->surface.height,
+    orl_tex_copy_layer(frame->paint->states[0], 0, frame->surface.width, frame->surface.height,
                        frame->picture, 0);
 }
 
 const struct post_pass orl_post_passes[] = {
-    {"room", orl_frame_shows_room, orl_room_show},
     {"fill", fills, orl_fill_color},
     {"soften", softens, orl_soften_prepare},
     {"compose", always, compose},

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "render/paint/paint.h"
+
 // Creates an image of the frame's size.
 static enum orl_result make(const struct frame *frame, int channels, struct orl_image *image)
 {
@@ -73,7 +75,7 @@ static enum orl_result read_confidence(const struct frame *frame, struct orl_ima
     if (result != ORL_OK)
         return result;
     const float *sums = staging->f32;
-    orl_tex_read(frame->trusted, 0, GL_RG, GL_FLOAT, orl_image_bytes(staging), staging->f32);
+    orl_tex_read(frame->paint->trusted, 0, GL_RG, GL_FLOAT, orl_image_bytes(staging), staging->f32);
     for (size_t i = 0; i < pixel_count(frame); i++)
         out->confidence.f32[i] = sums[2 * i + 1] > 0 ? sums[2 * i] / sums[2 * i + 1] : 0;
     return ORL_OK;
@@ -89,7 +91,7 @@ enum orl_result orl_read_back(const struct frame *frame, struct orl_image *stagi
         result = read_depth(frame, out);
     if (result == ORL_OK && !(leave_out & ORL_LAYER_NORMAL))
         result = read_normal(frame, out);
-    if (result == ORL_OK && frame->trusted && !(leave_out & ORL_LAYER_CONFIDENCE))
+    if (result == ORL_OK && frame->paint->trusted && !(leave_out & ORL_LAYER_CONFIDENCE))
         result = read_confidence(frame, staging, out);
     return result;
 }

@@ -29,7 +29,7 @@ void orl_reconstruction_vary(int index, int count, struct orl_render_params *par
     camera->cy += shift_px * corners[(index - 1) % 4][1];
 }
 
-void orl_reconstruction_add(const struct frame *frame, int index, int count)
+void orl_reconstruction_add(const struct frame *frame, struct orl_tex *mean, int index, int count)
 {
     const char *defines = frame->finishes ? "FINISHED" : NULL;
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
@@ -37,7 +37,7 @@ void orl_reconstruction_add(const struct frame *frame, int index, int count)
     struct orl_dispatch d = {
         .prog = orl_prog_get(frame->gpu, "fill/mean.comp", NULL, defines),
         .params = &block, .params_size = sizeof block,
-        .images = {{frame->picture, 0, GL_READ_WRITE}, {frame->mean, 0, GL_READ_WRITE}},
+        .images = {{frame->picture, 0, GL_READ_WRITE}, {mean, 0, GL_READ_WRITE}},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
     orl_pass_begin(frame->gpu, "mean");

@@ -17,8 +17,8 @@ int orl_reconstruction_count(const struct frame *frame);
 // with the frame's.
 void orl_reconstruction_vary(int index, int count, struct orl_render_params *params,
                              struct orl_camera *camera);
-// Adds the finished picture to frame->mean, in square roots of light. After the last one, the
+// Adds the finished picture to the mean (RGBA32F), in square roots of light. After the last one, the
 // picture is the mean. Coverage is that of the first.
-void orl_reconstruction_add(const struct frame *frame, int index, int count);
+void orl_reconstruction_add(const struct frame *frame, struct orl_tex *mean, int index, int count);
 
 #endif

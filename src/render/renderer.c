@@ -7,11 +7,7 @@
 #include "render/frame/method.h"
 #include "render/hull/prefetch.h"
 #include "render/hull/voxel_proxy.h"
-#include "render/paint/edges.h"
-#include "render/paint/fill.h"
-#include "render/paint/gather.h"
-#include "render/paint/guess.h"
-#include "render/paint/soften.h"
+#include "render/paint/paint.h"
 #include "render/papers/room.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
@@ -28,12 +24,10 @@ struct orl_renderer {
     struct proxy proxies[PROXIES_MAX]; // of the kinds used so far; the first is the points
     size_t proxy_count;
     struct photos photos;
-    struct fill fill;
-    struct soften soften;
-    struct edges edges;
-    struct guess guess;
-    struct gather gather;
-    struct orl_tex *picture, *trusted, *room, *states[2], *mean; // textures of struct frame
+    struct paint paint;
+    struct room room;
+    struct orl_tex *picture;  // of struct frame
+    struct orl_tex *mean;     // reconstructions.h; NULL: a frame is one picture
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
     struct orl_image staging; // for read_back.h
@@ -107,7 +101,7 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
         result = orl_photos_init(gpu, scene, params,
                                  params->max_vram_bytes ? photo_budget(r, params->max_vram_bytes)
                                                         : 0, &r->photos);
-    ORL_THEN(result, orl_gather_init(gpu, scene->photo_count, &r->gather));
+    ORL_THEN(result, orl_paint_init(gpu, scene->photo_count, &r->paint));
     if (result != ORL_OK)
         orl_renderer_destroy(&r);
     *out = r;
@@ -123,17 +117,10 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
         orl_proxy_finish(r->gpu, &r->proxies[i]);
     orl_prefetch_destroy(r->gpu, &r->prefetch);
     orl_photos_finish(r->gpu, &r->photos);
-    orl_fill_finish(r->gpu, &r->fill);
-    orl_soften_finish(r->gpu, &r->soften);
-    orl_edges_finish(r->gpu, &r->edges);
-    orl_guess_finish(r->gpu, &r->guess);
-    orl_gather_finish(r->gpu, &r->gather);
+    orl_paint_finish(r->gpu, &r->paint);
+    orl_room_finish(r->gpu, &r->room);
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->picture);
-    orl_tex_destroy(r->gpu, &r->trusted);
-    orl_tex_destroy(r->gpu, &r->room);
-    orl_tex_destroy(r->gpu, &r->states[0]);
-    orl_tex_destroy(r->gpu, &r->states[1]);
     orl_tex_destroy(r->gpu, &r->mean);
     free(r->chosen);
     free(r->selected);
@@ -151,48 +138,14 @@ size_t orl_renderer_uploaded(const struct orl_renderer *renderer)
     return renderer->photos.uploaded;
 }
 
-// Makes *tex fit the size and the format. Destroys it if it is not `wanted`.
-static enum orl_result retarget(struct orl_gpu *gpu, const char *tag, bool wanted, int width,
-                                int height, GLenum format, struct orl_tex **tex)
-{
-    const struct orl_tex *old = *tex;
-    if (wanted && old && old->params.width == width && old->params.height == height &&
-        old->params.format == format)
-        return ORL_OK;
-    orl_tex_destroy(gpu, tex);
-    struct orl_tex_params params = {.width = width, .height = height, .format = format,
-                                    .tag = tag};
-    return wanted ? orl_tex_create(gpu, &params, tex) : ORL_OK;
-}
-
 static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
 {
-    int width = frame->view->camera.width, height = frame->view->camera.height;
-    int states = frame->radiance || frame->finishes ? 0 : frame->params->combine->states;
-    if (frame->params->median != ORL_MEDIAN_OFF)
-        states = states > 1 ? states : 1;
-    const struct {
-        const char *tag;
-        bool wanted;
-        GLenum format;
-        struct orl_tex **tex;
-    } targets[] = {
-        {"accumulated colour", true, frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture},
-        {"accumulated trust", frame->radiance, GL_RGBA32F, &r->trusted},
-        {"room", orl_frame_shows_room(frame), GL_RGBA32F, &r->room},
-        {"combination", states > 0, GL_RGBA32F, &r->states[0]},
-        {"combination", states > 1, GL_RGBA32F, &r->states[1]},
-        {"mean of pictures", orl_reconstruction_count(frame) > 1, GL_RGBA32F, &r->mean},
-    };
-    enum orl_result result = orl_fill_resize(r->gpu, &r->fill, width, height);
-    ORL_THEN(result, orl_soften_resize(r->gpu, &r->soften, width, height));
-    if (result == ORL_OK && !frame->radiance)
-        result = orl_edges_resize(r->gpu, &r->edges, width, height);
-    if (result == ORL_OK && frame->finishes)
-        result = orl_guess_resize(frame, &r->guess);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(targets); i++)
-        result = retarget(r->gpu, targets[i].tag, targets[i].wanted, width, height,
-                          targets[i].format, targets[i].tex);
+    enum orl_result result = orl_paint_resize(frame);
+    ORL_THEN(result, orl_frame_target(frame, "accumulated colour", true,
+                                      frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture));
+    ORL_THEN(result, orl_room_resize(frame, &r->room));
+    ORL_THEN(result, orl_frame_target(frame, "mean of pictures", orl_reconstruction_count(frame) > 1,
+                                      GL_RGBA32F, &r->mean));
     return result;
 }
 
@@ -203,19 +156,24 @@ static enum orl_result draw_surface(struct frame *frame, const struct orl_render
                           &frame->proxy->view_target, &frame->surface);
 }
 
-static enum orl_result draw_picture(struct frame *frame, const struct orl_render_params *params)
+static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
+                                    const struct orl_render_params *params)
 {
     const struct orl_painter *painter = frame->params->paint;
+    const bool room = orl_frame_shows_room(frame);
+    size_t absent = 0;
     enum orl_result result = draw_surface(frame, params);
     if (result != ORL_OK)
         return result;
     if (orl_frame_guesses(frame) && painter != &orl_paint_points)
         orl_fill_depth(frame);
-    if (orl_frame_shows_room(frame))
-        result = orl_room_paint(frame);
+    if (room)
+        result = orl_room_paint(frame, &r->room, &absent);
     ORL_THEN(result, painter->paint(frame));
     if (frame->progressive) // those that came with this frame are in the next one's room
-        frame->progressive->missing += frame->room_absent;
+        frame->progressive->missing += absent;
+    if (result == ORL_OK && room)
+        orl_room_show(frame, &r->room);
     for (const struct post_pass *pass = orl_post_passes; result == ORL_OK && pass->name; pass++) {
         if (!pass->applies(frame))
             continue;
@@ -226,7 +184,7 @@ static enum orl_result draw_picture(struct frame *frame, const struct orl_render
     return result;
 }
 
-static enum orl_result draw(struct frame *frame, bool normals)
+static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool normals)
 {
     const struct orl_painter *painter = frame->params->paint;
     int count = orl_reconstruction_count(frame), done = 0;
@@ -239,13 +197,13 @@ static enum orl_result draw(struct frame *frame, bool normals)
         struct orl_view view = *whole;
         orl_reconstruction_vary(done, count, &params, &view.camera);
         frame->view = &view;
-        result = draw_picture(frame, &params);
+        result = draw_picture(r, frame, &params);
         frame->view = whole;
         // A frame that lacks photographs is soon drawn again.
         if (frame->progressive && frame->progressive->missing > 0)
             break;
         if (result == ORL_OK && count > 1)
-            orl_reconstruction_add(frame, done, count);
+            orl_reconstruction_add(frame, r->mean, done, count);
     }
     if (result == ORL_OK && done > 1) // what is read back beside the picture is the scene's own
         result = draw_surface(frame, frame->params);
@@ -261,17 +219,7 @@ static struct frame start_frame(struct orl_renderer *r, struct proxy *proxy,
         .radiance = r->photos.radiance, .reads_chroma = r->photos.chroma != NULL,
         .finishes = params->paint->finishes && !r->photos.radiance,
         .proxy = proxy, .photos = &r->photos,
-        .gather = &r->gather, .fill = &r->fill, .soften = &r->soften, .edges = &r->edges, .guess = &r->guess,
-        .chosen = r->chosen, .selected = r->selected};
-}
-
-void orl_frame_finish(struct orl_frame *frame)
-{
-    orl_image_finish(&frame->color);
-    orl_image_finish(&frame->depth);
-    orl_image_finish(&frame->normal);
-    orl_image_finish(&frame->coverage);
-    orl_image_finish(&frame->confidence);
+        .paint = &r->paint, .chosen = r->chosen, .selected = r->selected};
 }
 
 // Draws and reads back the frame, whose proxy is up to date. With `next`, prepares that time step
@@ -279,7 +227,7 @@ void orl_frame_finish(struct orl_frame *frame)
 static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame, bool normals,
                                     struct prefetch *next, struct orl_frame *out)
 {
-    enum orl_result result = draw(frame, normals);
+    enum orl_result result = draw(r, frame, normals);
     if (result == ORL_OK && next) {
         orl_prefetch_want(next, frame->chosen, frame->chosen_count);
         orl_pass_begin(r->gpu, "next hull");
@@ -306,10 +254,6 @@ static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
     ORL_THEN(result, orl_photos_ready(r->gpu, &r->photos));
     ORL_THEN(result, resize(r, frame));
     frame->picture = r->picture;
-    frame->trusted = r->trusted;
-    frame->room = r->room;
-    frame->mean = r->mean;
-    memcpy(frame->states, r->states, sizeof frame->states);
     return result;
 }
 

@@ -16,6 +16,29 @@ void orl_pixel_groups(int width, int height, unsigned groups[3])
     groups[2] = 1;
 }
 
+enum orl_result orl_frame_target(const struct frame *frame, const char *tag, bool wanted, GLenum format,
+                                 struct orl_tex **tex)
+{
+    const struct orl_camera *camera = &frame->view->camera;
+    const struct orl_tex *old = *tex;
+    if (wanted && old && old->params.width == camera->width && old->params.height == camera->height &&
+        old->params.format == format)
+        return ORL_OK;
+    orl_tex_destroy(frame->gpu, tex);
+    struct orl_tex_params params = {.width = camera->width, .height = camera->height, .format = format,
+                                    .tag = tag};
+    return wanted ? orl_tex_create(frame->gpu, &params, tex) : ORL_OK;
+}
+
+void orl_frame_finish(struct orl_frame *frame)
+{
+    orl_image_finish(&frame->color);
+    orl_image_finish(&frame->depth);
+    orl_image_finish(&frame->normal);
+    orl_image_finish(&frame->coverage);
+    orl_image_finish(&frame->confidence);
+}
+
 bool orl_frame_guesses(const struct frame *frame)
 {
     return frame->params->fill == ORL_FILL_DEPTH || frame->params->fill == ORL_FILL_GROUND;

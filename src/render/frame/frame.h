@@ -6,11 +6,7 @@
 
 struct proxy;
 struct photos;
-struct gather;
-struct fill;
-struct soften;
-struct edges;
-struct guess;
+struct paint;
 
 // The result of a proxy, which is all that later passes see of it.
 struct surface {
@@ -19,7 +15,7 @@ struct surface {
     struct orl_tex *normal; // RGBA16F: camera frame, 0: none; w: 1 if a primitive is visible
 };
 
-// The state that every pass gets. Passes keep data that outlives a frame in their own structs.
+// What every pass gets. What a pass alone needs, and what outlives a frame, is in its own struct.
 struct frame {
     struct orl_gpu *gpu;
     const struct orl_scene *scene;
@@ -34,11 +30,7 @@ struct frame {
     struct proxy *proxy;       // draws the surfaces of this view and of the photographs
     struct surface surface;    // surface that the view sees
     struct photos *photos;     // photographs on the device
-    struct gather *gather;     // parameters of the photographs in use
-    struct fill *fill;
-    struct soften *soften;
-    struct edges *edges;
-    struct guess *guess;
+    struct paint *paint;       // what the passes that make colours keep, paint/paint.h
     // Indices of the photographs that this frame asks, ascending; memory of the renderer.
     size_t *chosen;
     float (*selected)[4];      // by the selection: weight of each; x y z its own use
@@ -46,13 +38,11 @@ struct frame {
     // Pixels as in shaders/shared/pixel.glsl, finished at the end. Half floats if the painter
     // finishes pixels.
     struct orl_tex *picture;
-    struct orl_tex *trusted;   // radiance: weight * confidence, weight, blur; else NULL
-    struct orl_tex *room;      // RGBA32F, room.h; NULL: not shown
-    size_t room_absent;        // photographs that a progressive frame's room lacks
-    struct orl_tex *states[2]; // RGBA32F, state of a combination between sweeps, and output of
-                               // a filter; else NULL
-    struct orl_tex *mean;      // RGBA32F, reconstructions.h; NULL: there is one alone
 };
+
+// Makes *tex fit the frame's picture and the format. Destroys it if it is not `wanted`.
+enum orl_result orl_frame_target(const struct frame *frame, const char *tag, bool wanted, GLenum format,
+                                 struct orl_tex **tex) ORL_CHECK_RESULT;
 
 // Number of work groups that cover width x height pixels.
 void orl_pixel_groups(int width, int height, unsigned groups[3]);

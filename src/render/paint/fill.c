@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "render/frame/method.h"
+#include "render/paint/paint.h"
 
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill)
 {
@@ -51,7 +52,7 @@ static void run(const struct frame *frame, struct step step, const struct orl_te
                 const struct orl_tex *covered)
 {
     int width = covered->params.width, height = covered->params.height, n = step.per_invocation;
-    struct image_block block = frame->fill->block;
+    struct image_block block = frame->paint->fill.block;
     block.image_size[0] = width;
     block.image_size[1] = height;
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, step.file, NULL, step.defines),
@@ -70,17 +71,17 @@ static void spread(const struct frame *frame, const char *how)
 {
     const struct step pull = {"fill/fill_pull.comp", how, 1, NULL};
     const struct step push = {"fill/fill_push.comp", how, 2, NULL};
-    struct orl_tex *const *level = frame->fill->level;
-    for (int i = 1; i < frame->fill->levels; i++)
+    struct orl_tex *const *level = frame->paint->fill.level;
+    for (int i = 1; i < frame->paint->fill.levels; i++)
         run(frame, pull, level[i - 1], GL_READ_ONLY, level[i], GL_WRITE_ONLY, level[i]);
-    for (int i = frame->fill->levels - 2; i >= 0; i--)
+    for (int i = frame->paint->fill.levels - 2; i >= 0; i--)
         run(frame, push, level[i], GL_READ_WRITE, level[i + 1], GL_READ_ONLY, level[i]);
 }
 
 static void seed(const struct frame *frame, const char *what, const struct orl_tex *from,
                  const struct orl_tex *beside, GLenum access)
 {
-    struct orl_tex *finest = frame->fill->level[0];
+    struct orl_tex *finest = frame->paint->fill.level[0];
     run(frame, (struct step){"fill/fill_seed.comp", what, 1, beside}, from, GL_READ_ONLY, finest,
         access, finest);
 }
@@ -88,7 +89,7 @@ static void seed(const struct frame *frame, const char *what, const struct orl_t
 void orl_fill_depth(const struct frame *frame)
 {
     static const struct step apply = {"fill/fill_depth.comp", NULL, 2, NULL};
-    struct image_block *block = &frame->fill->block;
+    struct image_block *block = &frame->paint->fill.block;
     struct orl_tex *depth = frame->surface.depth;
     double distance = frame->scene->photo_distance;
     block->depth_scale = distance > 0 ? (float)distance : 1.0f;
@@ -97,7 +98,7 @@ void orl_fill_depth(const struct frame *frame)
     orl_pass_begin(frame->gpu, "fill");
     seed(frame, "SEED_DEPTH", depth, frame->surface.normal, GL_WRITE_ONLY);
     spread(frame, "FAR");
-    run(frame, apply, frame->fill->level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
+    run(frame, apply, frame->paint->fill.level[0], GL_READ_ONLY, depth, GL_READ_WRITE, depth);
     orl_pass_end(frame->gpu);
 }
 
@@ -109,17 +110,16 @@ static void restore_highlights(const struct frame *frame)
     spread(frame, NULL);
     seed(frame, "SEED_BRIGHTER", frame->picture, NULL, GL_READ_WRITE);
     spread(frame, NULL);
-    run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->picture, GL_READ_WRITE,
+    run(frame, apply, frame->paint->fill.level[0], GL_READ_ONLY, frame->picture, GL_READ_WRITE,
         frame->picture);
 }
 
-void orl_fill_room(const struct frame *frame)
+void orl_fill_room(const struct frame *frame, struct orl_tex *room)
 {
     static const struct step apply = {"fill/fill_room.comp", NULL, 2, NULL};
-    seed(frame, NULL, frame->room, NULL, GL_WRITE_ONLY);
+    seed(frame, NULL, room, NULL, GL_WRITE_ONLY);
     spread(frame, NULL);
-    run(frame, apply, frame->fill->level[0], GL_READ_ONLY, frame->room, GL_READ_WRITE,
-        frame->room);
+    run(frame, apply, frame->paint->fill.level[0], GL_READ_ONLY, room, GL_READ_WRITE, room);
 }
 
 void orl_fill_color(const struct frame *frame)

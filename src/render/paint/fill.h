@@ -19,8 +19,8 @@ void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 // Writes the estimated background depth ("guess" in identifiers), as negative values, where the
 // surface has none. With fill=ground it is no farther than the scene's ground.
 void orl_fill_depth(const struct frame *frame);
-// Completes frame->room where no photograph shows it.
-void orl_fill_room(const struct frame *frame);
+// Completes the picture of a room where no photograph shows it.
+void orl_fill_room(const struct frame *frame, struct orl_tex *room);
 // Spreads the blended colours over fill->level[0]. Painters that finish pixels have already written
 // sums over 2x2 pixels of (colour, 1) there. In radiance, clipped pixels first take the light
 // around them. Before a room only colours of surfaces count.

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/paint/fill.h"
+#include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 
@@ -132,7 +132,7 @@ int orl_tile_side(const struct frame *frame)
 
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count)
 {
-    struct gather *g = frame->gather;
+    struct gather *g = &frame->paint->gather;
     const struct photos *photos = frame->photos;
     const struct orl_render_params *params = frame->params;
     const struct orl_tex_params *depth = &photos->depth_params;
@@ -168,7 +168,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines)
 {
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->gather->options,
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->paint->gather.options,
                             frame->reads_chroma ? "CHROMA 1\n" : "",
                             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
                             defines ? defines : "");
@@ -231,11 +231,11 @@ static enum orl_result choose_radiance(const struct frame *frame, const struct g
     size_t across = d.groups[0], down = d.groups[1];
     enum orl_result result =
         orl_make_room(frame->gpu, "photographs of tiles",
-                      across * down * ORL_RADIANCE_LIST * sizeof(int), &frame->gather->tile_lists);
+                      across * down * ORL_RADIANCE_LIST * sizeof(int), &frame->paint->gather.tile_lists);
     if (result != ORL_OK)
         return result;
     d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", slots->slots, NULL);
-    d.bufs[1].buf = frame->gather->tile_lists;
+    d.bufs[1].buf = frame->paint->gather.tile_lists;
     d.groups[0] = orl_groups(across, 8);
     d.groups[1] = orl_groups(down, 8);
     d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
@@ -279,10 +279,10 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
                      [ORL_PHOTO_CHROMA] = frame->photos->chroma},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
                    {frame->picture, 0, GL_READ_WRITE},
-                   {frame->radiance ? frame->trusted : frame->states[0], 0, GL_READ_WRITE},
-                   {frame->states[1], 0, GL_READ_WRITE},
+                   {frame->radiance ? frame->paint->trusted : frame->paint->states[0], 0, GL_READ_WRITE},
+                   {frame->paint->states[1], 0, GL_READ_WRITE},
                    {frame->surface.normal, 0, GL_READ_ONLY},
-                   [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
+                   [PHOTO_ROWS] = {frame->paint->gather.photo_rows, 0, GL_READ_ONLY}},
         // The storage barrier is needed because the next batch overwrites the lists of this one.
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
@@ -290,7 +290,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
         enum orl_result result = choose_radiance(frame, &slots, d);
         if (result != ORL_OK)
             return result;
-        d.bufs[1].buf = frame->gather->tile_lists;
+        d.bufs[1].buf = frame->paint->gather.tile_lists;
     }
     orl_pass_begin(frame->gpu, "gather");
     orl_gpu_dispatch(frame->gpu, &d);
@@ -325,8 +325,8 @@ static enum orl_result sweep_over(const struct frame *frame, int sweep)
 
 void orl_gather_clear(const struct frame *frame)
 {
-    struct orl_tex *const targets[] = {frame->picture, frame->trusted, frame->states[0],
-                                       frame->states[1]};
+    struct orl_tex *const targets[] = {frame->picture, frame->paint->trusted, frame->paint->states[0],
+                                       frame->paint->states[1]};
     for (size_t i = 0; i < ORL_COUNT(targets); i++)
         if (targets[i])
             orl_tex_clear(targets[i], 0);
@@ -340,7 +340,7 @@ enum orl_result orl_gather_underpaint(const struct frame *frame)
         return ORL_OK;
     orl_pass_begin(frame->gpu, "gather");
     const struct paint_into into = {frame->picture,
-                                    frame->finishes ? frame->fill->level[0] : NULL, true};
+                                    frame->finishes ? frame->paint->fill.level[0] : NULL, true};
     enum orl_result result = orl_proxy_color(frame, &into);
     orl_pass_end(frame->gpu);
     return result;

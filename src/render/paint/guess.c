@@ -1,6 +1,6 @@
 #include "render/paint/guess.h"
 
-#include "render/paint/gather.h"
+#include "render/paint/paint.h"
 
 enum { COSTS = 3, SUMS = 4 }; // storage bindings of shaders/guess
 
@@ -83,7 +83,7 @@ static void smooth(const struct frame *frame, int width, int height, struct orl_
 void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choice,
                      const struct gather_block *block)
 {
-    const struct guess *guess = frame->guess;
+    const struct guess *guess = &frame->paint->guess;
     double distance = frame->scene->photo_distance > 0 ? frame->scene->photo_distance : 1;
     struct gather_block planes = *block;
     planes.planes = plane_count(frame);

@@ -1,5 +1,6 @@
 #include "render/paint/soften.h"
 
+#include "render/paint/paint.h"
 #include "shared/render_blocks.h"
 
 // The largest blur as a share of the picture's longer side: with a larger one, holes of a surface would
@@ -37,7 +38,7 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, in
 
 void orl_soften_prepare(const struct frame *frame)
 {
-    struct orl_tex *guesses = frame->soften->guesses;
+    struct orl_tex *guesses = frame->paint->soften.guesses;
     int width = guesses->params.width, height = guesses->params.height;
     if (frame->radiance) {
         struct image_block block = {.image_size = {width, height}};
@@ -45,7 +46,7 @@ void orl_soften_prepare(const struct frame *frame)
             .prog = orl_prog_get(frame->gpu, "fill/fill_seed.comp", NULL, "SEED_GUESSES"),
             .params = &block, .params_size = sizeof block,
             .images = {{frame->picture, 0, GL_READ_ONLY}, {guesses, 0, GL_WRITE_ONLY},
-                       {frame->trusted, 0, GL_READ_ONLY}}};
+                       {frame->paint->trusted, 0, GL_READ_ONLY}}};
         orl_pixel_groups(width, height, d.groups);
         orl_gpu_dispatch(frame->gpu, &d);
     }

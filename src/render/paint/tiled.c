@@ -3,10 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "render/paint/fill.h"
-#include "render/paint/gather.h"
-#include "render/paint/guess.h"
-#include "render/paint/soften.h"
+#include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 
@@ -14,7 +11,7 @@
 static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
 {
     static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
-    struct gather *g = frame->gather;
+    struct gather *g = &frame->paint->gather;
     enum orl_result result = orl_make_room(frame->gpu, "photographs of tiles",
                                            tiles * CANDIDATES * sizeof(int), &g->tile_lists);
     if (result == ORL_OK)
@@ -43,13 +40,13 @@ static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatc
     snprintf(defines, sizeof defines, "%sKEPT %d", rest_define(frame), kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
-    d.images[2] = (struct orl_image_binding){frame->fill->level[0], 0, GL_WRITE_ONLY};
-    d.images[3] = (struct orl_image_binding){frame->soften->guesses, 0, GL_WRITE_ONLY};
+    d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
+    d.images[3] = (struct orl_image_binding){frame->paint->soften.guesses, 0, GL_WRITE_ONLY};
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
                 GL_COMMAND_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
-    orl_tex_clear(frame->soften->guesses, 0);
+    orl_tex_clear(frame->paint->soften.guesses, 0);
     orl_pass_begin(frame->gpu, "gather");
     orl_gpu_dispatch(frame->gpu, &d);
     orl_pass_end(frame->gpu);
@@ -57,7 +54,7 @@ static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatc
 
 static enum orl_result paint_chosen(const struct frame *frame)
 {
-    struct gather *g = frame->gather;
+    struct gather *g = &frame->paint->gather;
     size_t across = orl_groups((size_t)frame->surface.width, orl_tile_side(frame));
     size_t down = orl_groups((size_t)frame->surface.height, orl_tile_side(frame));
     unsigned groups[3];

@@ -12,7 +12,7 @@
 #include "gpu/raster.h"
 #include "render/frame/method.h"
 #include "render/hull/voxel_proxy.h"
-#include "render/paint/gather.h"
+#include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 #include "render/photos/select.h"
@@ -112,7 +112,7 @@ static struct orl_prog *program(const struct frame *frame)
     char defines[64];
     snprintf(defines, sizeof defines, "PAINTED 1\n%s%s", frame->radiance ? "RADIANCE 1\n" : "",
              frame->reads_chroma ? "CHROMA 1\n" : "");
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s", frame->gather->options, defines);
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s", frame->paint->gather.options, defines);
     struct orl_prog *prog =
         text ? orl_prog_get_raster(frame->gpu, "hull/billboard.vert", "hull/billboard.frag", text)
              : NULL;
@@ -135,7 +135,7 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
         .primitive = GL_TRIANGLES, .count = 6, .instances = count, .over = true,
         .textures = {frame->photos->color, NULL, frame->photos->mask,
                      [ORL_PHOTO_CHROMA] = frame->photos->chroma},
-        .images = {[PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
+        .images = {[PHOTO_ROWS] = {frame->paint->gather.photo_rows, 0, GL_READ_ONLY}},
         .targets = {frame->picture},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT};
     if (count)

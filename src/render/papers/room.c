@@ -5,11 +5,20 @@
 #include <string.h>
 
 #include "render/frame/method.h"
-#include "render/paint/fill.h"
-#include "render/paint/gather.h"
+#include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/select.h"
 #include "scene/room_extent.h"
+
+enum orl_result orl_room_resize(const struct frame *frame, struct room *room)
+{
+    return orl_frame_target(frame, "room", orl_frame_shows_room(frame), GL_RGBA32F, &room->picture);
+}
+
+void orl_room_finish(struct orl_gpu *gpu, struct room *room)
+{
+    orl_tex_destroy(gpu, &room->picture);
+}
 
 static void place(const struct frame *frame, struct gather_block *block)
 {
@@ -24,8 +33,9 @@ static void place(const struct frame *frame, struct gather_block *block)
     }
 }
 
-// One batch: the photographs of frame->chosen from `first` on, all resident.
-static void project(const struct frame *frame, bool backgrounds, size_t first, size_t count)
+// One batch, into `room`: the photographs of frame->chosen from `first` on, all resident.
+static void project(const struct frame *frame, struct orl_tex *room, bool backgrounds, size_t first,
+                    size_t count)
 {
     struct gather_block block = orl_gather_prepare(frame, first, count);
     struct gather_slots slots;
@@ -44,81 +54,82 @@ static void project(const struct frame *frame, bool backgrounds, size_t first, s
         .textures = {backgrounds ? frame->photos->background : frame->photos->color,
                      frame->photos->depth, [ORL_PHOTO_CHROMA] = frame->photos->chroma},
         .images = {{frame->surface.depth, 0, GL_READ_ONLY},
-                   {frame->room, 0, GL_READ_WRITE},
-                   {frame->states[0], 0, GL_READ_WRITE},
-                   [PHOTO_ROWS] = {frame->gather->photo_rows, 0, GL_READ_ONLY}},
+                   {room, 0, GL_READ_WRITE},
+                   {frame->paint->states[0], 0, GL_READ_WRITE},
+                   [PHOTO_ROWS] = {frame->paint->gather.photo_rows, 0, GL_READ_ONLY}},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
 // Makes `count` photographs ready to be projected.
-static enum orl_result require(const struct frame *room, bool backgrounds, const size_t *photos,
+static enum orl_result require(const struct frame *frame, bool backgrounds, const size_t *photos,
                                size_t count)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        result = backgrounds ? orl_photos_require_background(room, photos[i])
-                             : orl_photos_require(room, photos[i], true);
+        result = backgrounds ? orl_photos_require_background(frame, photos[i])
+                             : orl_photos_require(frame, photos[i], true);
     }
     return result;
 }
 
 // For a progressive frame: keeps the photographs that are on the device, to which the painter
 // brings them, and counts the others as absent. A frame reads one background.
-static enum orl_result keep_present(struct frame *room, bool backgrounds, size_t *absent)
+static enum orl_result keep_present(struct frame *frame, bool backgrounds, size_t *absent)
 {
     size_t kept = 0;
     bool has_read = false;
     enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < room->chosen_count; i++) {
-        size_t photo = room->chosen[i];
-        bool there = room->photos->states[photo].has_color;
-        if (there && backgrounds && !orl_photos_has_background(room->photos, photo)) {
+    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
+        size_t photo = frame->chosen[i];
+        bool there = frame->photos->states[photo].has_color;
+        if (there && backgrounds && !orl_photos_has_background(frame->photos, photo)) {
             there = !has_read;
             has_read = true;
-            result = there ? orl_photos_require_background(room, photo) : ORL_OK;
+            result = there ? orl_photos_require_background(frame, photo) : ORL_OK;
         }
-        int divide = there && !backgrounds ? orl_photos_depth_divide(room, photo) : 1;
+        int divide = there && !backgrounds ? orl_photos_depth_divide(frame, photo) : 1;
         if (there && divide > 0)
-            room->chosen[kept++] = photo;
+            frame->chosen[kept++] = photo;
         *absent += !there || divide != 1;
     }
-    room->chosen_count = kept;
+    frame->chosen_count = kept;
     return result;
 }
 
-enum orl_result orl_room_paint(struct frame *frame)
+enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *absent)
 {
     struct orl_render_params params = *frame->params;
-    struct frame room = *frame;
+    struct frame walls = *frame; // the frame that the room is painted as
     bool backgrounds = orl_photos_backgrounds(frame->photos);
-    room.params = &params;
-    room.reads_chroma = frame->reads_chroma && !backgrounds;
+    walls.params = &params;
+    walls.reads_chroma = frame->reads_chroma && !backgrounds;
     snprintf(params.weight, sizeof params.weight, "equal");
     params.combine = &orl_combine_mean;
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
-    orl_tex_clear(frame->room, 0);
-    enum orl_result result = orl_select_all.choose(&room, 0);
+    *absent = 0;
+    orl_tex_clear(room->picture, 0);
+    enum orl_result result = orl_select_all.choose(&walls, 0);
     if (result == ORL_OK && frame->progressive)
-        result = keep_present(&room, backgrounds, &frame->room_absent);
+        result = keep_present(&walls, backgrounds, absent);
     size_t batch = (size_t)frame->photos->slot_count;
     orl_pass_begin(frame->gpu, "room");
-    for (size_t first = 0; result == ORL_OK && first < room.chosen_count; first += batch) {
-        size_t left = room.chosen_count - first, count = left < batch ? left : batch;
+    for (size_t first = 0; result == ORL_OK && first < walls.chosen_count; first += batch) {
+        size_t left = walls.chosen_count - first, count = left < batch ? left : batch;
         if (!frame->progressive)
-            result = require(&room, backgrounds, room.chosen + first, count);
+            result = require(&walls, backgrounds, walls.chosen + first, count);
         if (result == ORL_OK)
-            project(&room, backgrounds, first, count);
+            project(&walls, room->picture, backgrounds, first, count);
     }
     if (result == ORL_OK)
-        orl_fill_room(frame);
+        orl_fill_room(frame, room->picture);
     orl_pass_end(frame->gpu);
     return result;
 }
 
-void orl_room_show(const struct frame *frame)
+void orl_room_show(const struct frame *frame, const struct room *room)
 {
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
                                 .layers = frame->params->paint->layers};
@@ -126,9 +137,11 @@ void orl_room_show(const struct frame *frame)
         .prog = orl_prog_get(frame->gpu, "fill/room.comp", NULL,
                              frame->finishes ? "FINISHED" : NULL),
         .params = &block, .params_size = sizeof block,
-        .images = {{frame->picture, 0, GL_READ_WRITE}, {frame->room, 0, GL_READ_ONLY},
+        .images = {{frame->picture, 0, GL_READ_WRITE}, {room->picture, 0, GL_READ_ONLY},
                    {frame->surface.depth, 0, GL_READ_ONLY}},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
+    orl_pass_begin(frame->gpu, "room");
     orl_gpu_dispatch(frame->gpu, &d);
+    orl_pass_end(frame->gpu);
 }
