@@ -1,5 +1,6 @@
 // oriel help: what --help says, and the pages that are made of the same tables.
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/help.h"
 
@@ -19,6 +20,10 @@ static enum orl_result run_help(struct call *call)
         [HELP_ZSH] = page_zsh, [HELP_FISH] = page_fish, [HELP_MARKDOWN] = page_markdown};
     const struct help_options *o = call->options;
     const struct command *command = NULL;
+    if (call->inputs[0] && strcmp(call->inputs[0], "job") == 0) {
+        help_print_jobs(stdout);
+        return ORL_OK;
+    }
     if (call->inputs[0] && !(command = command_find(call->inputs[0], false)))
         command = command_find(call->inputs[0], true);
     if (call->inputs[0] && !command)

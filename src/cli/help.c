@@ -71,5 +71,15 @@ void help_print_overview(FILE *out)
             if (commands[i]->group == g && !commands[i]->hidden)
                 fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->brief);
     }
+    fprintf(out, "  %-10s %s\n", "job", "what the jobs of plan call; oriel help job lists it");
     fprintf(out, "  %-10s %s\n", "version", "print the version");
+}
+
+void help_print_jobs(FILE *out)
+{
+    fprintf(out, "usage: oriel job COMMAND ...    (oriel help COMMAND says more)\n\n"
+                 "What only the jobs of oriel plan call:\n");
+    for (size_t i = 0; commands[i]; i++)
+        if (commands[i]->hidden)
+            fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->brief);
 }

@@ -6,6 +6,8 @@
 
 // The commands in their groups.
 void help_print_overview(FILE *out);
+// The hidden commands.
+void help_print_jobs(FILE *out);
 // What oriel COMMAND --help says.
 void help_print(FILE *out, const struct command *command);
 // "(auto, full; default auto)" or "(1 to 16; default 8)" for an option; "" where its help says all.

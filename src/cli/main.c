@@ -4,9 +4,9 @@
 #include "cli/command.h"
 #include "cli/help.h"
 
-static int print_usage_error(const char *name)
+static int print_usage_error(void (*print)(FILE *out), const char *name)
 {
-    help_print_overview(stderr);
+    print(stderr);
     if (*name)
         fprintf(stderr, "\noriel: error: unknown command %s\n", name);
     return 2;
@@ -15,10 +15,14 @@ static int print_usage_error(const char *name)
 // oriel job NAME: commands that only jobs of oriel plan call.
 static int run_job(int argc, const char *const *argv)
 {
-    const struct command *command = command_find(argc ? argv[0] : "", true);
-    if (!command)
-        return print_usage_error(argc ? argv[0] : "");
-    return command_main(command, argc - 1, argv + 1);
+    const char *name = argc > 0 ? argv[0] : "";
+    const struct command *command = command_find(name, true);
+    if (command)
+        return command_main(command, argc - 1, argv + 1);
+    if (strcmp(name, "--help") != 0)
+        return print_usage_error(help_print_jobs, name);
+    help_print_jobs(stdout);
+    return 0;
 }
 
 static int run_command(int argc, const char *const *argv)
@@ -34,7 +38,7 @@ static int run_command(int argc, const char *const *argv)
         return 0;
     }
     if (strcmp(name, "--help") != 0)
-        return print_usage_error(name);
+        return print_usage_error(help_print_overview, name);
     help_print_overview(stdout);
     return 0;
 }

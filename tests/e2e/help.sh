@@ -21,7 +21,13 @@ done
 runs 2 "$oriel" help nonsense
 runs 2 "$oriel" nonsense
 runs 2 "$oriel" fuse scene
+runs 0 "$oriel" help job
+for command in calibrate fuse; do
+    grep -q "^  $command " stdout.txt || fail "help job does not list $command"
+done
+grep -q '^  render ' stdout.txt && fail "help job lists what is no job's"
 runs 2 "$oriel" job
+grep -q '^  fuse ' stderr.txt || fail "job alone does not list its commands"
 runs 2 "$oriel" job render
 
 # Every option is in every form.
