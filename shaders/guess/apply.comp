@@ -15,10 +15,10 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= view_size.x || at.y >= view_size.y)
         return;
-    float own = imageLoad(picked, at / GUESS_CELL).r, depth = imageLoad(view_depth, at).r;
+    float own = imageLoad(picked, at / CELL).r, depth = imageLoad(view_depth, at).r;
     if (!(depth < 0.0 && own < 1.0))
         return;
-    vec2 place = (vec2(at) + 0.5) / float(GUESS_CELL) - 0.5, part = fract(place);
+    vec2 place = (vec2(at) + 0.5) / float(CELL) - 0.5, part = fract(place);
     vec2 sum = vec2(own, 1.0) * 1e-6;
     for (int k = 0; k < 4; k++) {
         ivec2 cell = clamp(ivec2(floor(place)) + ivec2(k & 1, k >> 1), ivec2(0),

@@ -24,29 +24,17 @@ const int ASKED = 4;   // photographs of a tile, at most: its worst ones say no 
 const float DIFFER_COST = 0.3, DIFFER_MAX = 0.15;
 // Cost of leaving the estimate by FAR planes or more, and by fewer in proportion.
 const float PRIOR = 0.2, FAR = 4.0;
-// A cell with surfaces in more than this share of the (2 AROUND + 1)^2 cells around it is closed:
-// the surfaces around a small hole know its depth better than photographs do.
-const int AROUND = 4;
-const float SURFACES_MAX = 0.8;
-
-// Mean inverse depth of the estimates in a cell; 0: there are none, or surfaces all around.
+// Mean inverse depth of the estimates in a cell; 0: there are none.
 float open_estimate(ivec2 cell)
 {
-    float sum = 0.0, count = 0.0, surfaces = 0.0;
-    for (int k = 0; k < GUESS_CELL * GUESS_CELL; k++) {
-        ivec2 at = GUESS_CELL * cell + ivec2(k % GUESS_CELL, k / GUESS_CELL);
+    float sum = 0.0, count = 0.0;
+    for (int k = 0; k < CELL * CELL; k++) {
+        ivec2 at = CELL * cell + ivec2(k % CELL, k / CELL);
         float z = imageLoad(view_depth, at).r; // 0 outside
         sum += z < 0.0 ? -1.0 / z : 0.0;
         count += z < 0.0 ? 1.0 : 0.0;
     }
-    for (int y = -AROUND; y <= AROUND; y++)
-        for (int x = -AROUND; x <= AROUND; x++) {
-            ivec2 at = (cell + ivec2(x, y)) * GUESS_CELL + GUESS_CELL / 2;
-            surfaces += imageLoad(view_depth, clamp(at, ivec2(0), view_size - 1)).r > 0.0 ? 1.0
-                                                                                          : 0.0;
-        }
-    float side = float(2 * AROUND + 1);
-    return count > 0.0 && surfaces <= SURFACES_MAX * side * side ? sum / count : 0.0;
+    return count > 0.0 ? sum / count : 0.0;
 }
 
 // What the photographs say of a point.
@@ -69,7 +57,7 @@ void ask(photo source, bool listed, vec3 p, inout opinion o)
     weight = inside ? weight : 0.0;
     float open = weight * photo_unhidden_share(source, seen, z), counts = open * (1.0 - past);
     // A texel of this level is as large as half a cell.
-    float mip = photo_mip(source, z, p.z) + log2(0.5 * float(GUESS_CELL));
+    float mip = photo_mip(source, z, p.z) + log2(0.5 * float(CELL));
     vec3 color = photo_bilinear(source, pixel, floor(min(mip, last_mip) + 0.5)).rgb;
     color = sqrt(photo_aligned(source, pixel, color));
     o.sum += vec4(color, 1.0) * counts;
@@ -105,9 +93,9 @@ void main()
             costs[row + k] = CLOSED;
         return;
     }
-    vec2 centre = (vec2(cell) + 0.5) * float(GUESS_CELL);
+    vec2 centre = (vec2(cell) + 0.5) * float(CELL);
     vec3 ray = vec3((centre - view_focal.zw) / view_focal.xy, 1.0);
-    ivec2 tile = cell * GUESS_CELL / tile_side;
+    ivec2 tile = cell * CELL / tile_side;
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
     for (int first = 0; first < planes; first += AT_ONCE) {
         opinion opinions[AT_ONCE];

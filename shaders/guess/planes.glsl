@@ -1,4 +1,4 @@
-// The depths that are tried where the surface has none. The view is divided into cells, and each
+// The depths that are tried where the surface has none. The view is divided into cells of CELL pixels, and each
 // open cell, which has estimated background depth alone, takes one of gather_block's `planes`: plane
 // 0 is its estimate, the last one is at infinity, and inverse depth falls by equal steps.
 const int PLANES_MAX = 32; // of the option guess_depths
@@ -7,7 +7,7 @@ const float CLOSED = -1.0; // cost of the planes of a cell that is not open
 
 ivec2 cells_across_down()
 {
-    return (view_size + GUESS_CELL - 1) / GUESS_CELL;
+    return (view_size + CELL - 1) / CELL;
 }
 
 // Index of the first of a cell's costs.

@@ -127,8 +127,7 @@ ORL_BLOCK(gather_block)
 
 // Selection of photographs per tile.
 #define CANDIDATES 8   // most photographs listed per tile
-// Estimated depth from photographs: pixels of a cell each way; lines of cells of a work group.
-#define GUESS_CELL 4
+// Estimated depth from photographs: lines of cells of a work group.
 #define GUESS_LINES 32
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 

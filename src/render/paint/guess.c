@@ -1,23 +1,39 @@
 #include "render/paint/guess.h"
 
+#include <stdio.h>
+
 #include "render/paint/paint.h"
 
-enum { COSTS = 3, SUMS = 4 }; // storage bindings of shaders/guess
+enum {
+    COSTS = 3, SUMS = 4, // storage bindings of shaders/guess
+    CELLS_MIN = 64,      // along the longer side of the picture
+};
 
 static int plane_count(const struct frame *frame)
 {
     return (int)(frame->params->guess_depths + 0.5f);
 }
 
-static int cells(int pixels)
+// Pixels of a cell's side: cells are about as large a part of pictures of any size.
+static int cell_side(const struct frame *frame)
 {
-    return (pixels + GUESS_CELL - 1) / GUESS_CELL;
+    const struct orl_camera *camera = &frame->view->camera;
+    int longer = camera->width > camera->height ? camera->width : camera->height, side = 2;
+    while (2 * CELLS_MIN * side <= longer)
+        side *= 2;
+    return side;
+}
+
+static int cells(const struct frame *frame, int pixels)
+{
+    int side = cell_side(frame);
+    return (pixels + side - 1) / side;
 }
 
 static size_t cost_bytes(const struct frame *frame)
 {
     const struct orl_camera *camera = &frame->view->camera;
-    return (size_t)cells(camera->width) * (size_t)cells(camera->height) *
+    return (size_t)cells(frame, camera->width) * (size_t)cells(frame, camera->height) *
            (size_t)plane_count(frame) * sizeof(float);
 }
 
@@ -49,7 +65,7 @@ static enum orl_result resize_cells(struct orl_gpu *gpu, const char *tag, int wi
 enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
 {
     struct orl_gpu *gpu = frame->gpu;
-    int width = cells(frame->view->camera.width), height = cells(frame->view->camera.height);
+    int width = cells(frame, frame->view->camera.width), height = cells(frame, frame->view->camera.height);
     size_t bytes = cost_bytes(frame);
     if (!orl_guess_applies(frame))
         return ORL_OK;
@@ -60,10 +76,16 @@ enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
     return result;
 }
 
-static void run(const struct frame *frame, const char *file, const char *defines, int width,
-                int height, struct orl_dispatch *d)
+static struct orl_prog *program(const struct frame *frame, const char *file, const char *along)
 {
-    d->prog = orl_gather_prog(frame, file, NULL, defines);
+    char defines[32];
+    snprintf(defines, sizeof defines, "CELL %d\n%s", cell_side(frame), along);
+    return orl_gather_prog(frame, file, NULL, defines);
+}
+
+static void run(const struct frame *frame, const char *file, int width, int height, struct orl_dispatch *d)
+{
+    d->prog = program(frame, file, "");
     orl_pixel_groups(width, height, d->groups);
     orl_gpu_dispatch(frame->gpu, d);
 }
@@ -73,7 +95,7 @@ static void smooth(const struct frame *frame, int width, int height, struct orl_
 {
     static const char *const along[] = {"ALONG 0", "ALONG 1", "ALONG 2", "ALONG 3"};
     for (int k = 0; k < 4; k++) {
-        d->prog = orl_gather_prog(frame, "guess/smooth.comp", NULL, along[k]);
+        d->prog = program(frame, "guess/smooth.comp", along[k]);
         d->groups[0] = orl_groups((size_t)(k < 2 ? height : width), GUESS_LINES);
         d->groups[1] = 1;
         orl_gpu_dispatch(frame->gpu, d);
@@ -98,10 +120,10 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     d.images[2] = (struct orl_image_binding){guess->picked, 0, GL_READ_WRITE};
     d.barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     orl_pass_begin(frame->gpu, "guess");
-    run(frame, "guess/cost.comp", NULL, width, height, &d);
+    run(frame, "guess/cost.comp", width, height, &d);
     smooth(frame, width, height, &d);
-    run(frame, "guess/pick.comp", NULL, width, height, &d);
-    run(frame, "guess/apply.comp", NULL, frame->surface.width, frame->surface.height, &d);
+    run(frame, "guess/pick.comp", width, height, &d);
+    run(frame, "guess/apply.comp", frame->surface.width, frame->surface.height, &d);
     orl_gpu_dispatch(frame->gpu, choice);
     orl_pass_end(frame->gpu);
 }
