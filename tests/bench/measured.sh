@@ -460,10 +460,10 @@ radiance_rows() {
            what = $2; for (i = 3; i < m - 1; i++) what = what " " $i
            if (!(what in count)) order[++kinds] = what
            count[what]++; rmse[what] += $(m - 1); median[what] += $(m + 1); most[what] += $(m + 3)
-           away[what] += $(m + 9) }
+           away[what] += $(m + 9); dark[what] += $(m + 15) }
          END { for (k = 1; k <= kinds; k++) { w = order[k]; n = count[w]
-               printf "| %s | %.2f | %.3f | %.2f | %.2f |\n", w, rmse[w] / n, median[w] / n, most[w] / n,
-                      away[w] / n } }' "$1"
+               printf "| %s | %.2f | %.3f | %.2f | %.2f | %.2f |\n", w, rmse[w] / n, median[w] / n, most[w] / n,
+                      away[w] / n, dark[w] / n } }' "$1"
 }
 
 page_radiance() {
@@ -487,11 +487,11 @@ page_radiance() {
 
 **Against true radiance.** A synthetic monument in three series, with true cameras and points. Errors are differences
 of log2, in stops, over covered pixels; means over the held-out views. Away from edges is more than 2 pixels from a
-step of one stop between neighbouring pixels of the truth. The rows that name the truth say how large the error of
+step of one stop between neighbouring pixels of the truth; the last column has the dark ones of these. The rows that name the truth say how large the error of
 the true picture itself is when it is moved by a part of a pixel.
 END
     command_block "$synth" "$truth" "$error"
-    printf '| picture | RMSE | median | 90 %% below | RMSE away from edges |\n|---|---|---|---|---|\n'
+    printf '| picture | RMSE | median | 90 %% below | RMSE away from edges | below 1/64 of white |\n|---|---|---|---|---|---|\n'
     radiance_rows "$work/radiance.txt"
     printf '\n**Time of both merges**, processor time of a view\n'
     command_block "$cost"
