@@ -3,6 +3,7 @@
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/backdrop.glsl"
+#include "gather/candidates.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
@@ -38,14 +39,12 @@ void main()
     float best[CANDIDATES];
     int index[CANDIDATES];
     for (int c = 0; c < CANDIDATES; c++) {
-        best[c] = 1e30;
+        best[c] = NOT_SEEN;
         index[c] = -1;
     }
     int i = 0;
     do { // the condition comes last: see tiled.comp
-        // The least penalty at any sample point, raised a little for photographs that see few
-        // points.
-        float least = 1e30, seen = 0.0;
+        float least = NOT_SEEN, seen = 0.0;
         photo source = photo_at(i);
         for (int s = 0; s < ACROSS * ACROSS; s++) {
             vec2 pixel;
@@ -57,23 +56,9 @@ void main()
             if (!(points[s].z > 0.0) || !(photo_project(source, points[s], pixel, z) || backdrop))
                 continue;
             float share = photo_unhidden_share(source, photo_depths(source, pixel), z);
-            float hidden = backdrop || share > 0.9 ? 1.0 : 8.0;
-            float penalty = photo_penalty(source, points[s]);
-            least = min(least, penalty * hidden);
-            seen += 1.0 / hidden;
+            candidate_sample(backdrop ? 1.0 : share, photo_penalty(source, points[s]), least, seen);
         }
-        least = seen == 0.0 ? 1e30 : least * (1.0 + 1.0 / max(seen, 0.1));
-        int candidate = i;
-        for (int c = 0; c < CANDIDATES; c++) { // insertion sort
-            if (least < best[c]) {
-                float b = best[c];
-                int n = index[c];
-                best[c] = least;
-                index[c] = candidate;
-                least = b;
-                candidate = n;
-            }
-        }
+        candidate_insert(candidate_penalty(least, seen), i, best, index);
         i++;
     } while (i < photo_count);
     for (int c = 0; c < CANDIDATES; c++)

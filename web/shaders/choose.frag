@@ -3,11 +3,12 @@
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 
+const int ACROSS = 3, CANDIDATES = 8;
+#include "gather/candidates.glsl"
+
 uniform sampler2D view_depth; // < 0: guessed
 uniform int photos;
 layout(location = 0) out uvec2 chosen;
-
-const int ACROSS = 3, CANDIDATES = 8;
 
 void main()
 {
@@ -20,10 +21,10 @@ void main()
         points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * depth;
     }
     float best[CANDIDATES];
-    uint index[CANDIDATES];
+    int index[CANDIDATES];
     for (int c = 0; c < CANDIDATES; c++) {
         best[c] = NOT_SEEN;
-        index[c] = 255u;
+        index[c] = 255;
     }
     for (int i = 0; i < photos; i++) {
         float least = NOT_SEEN, seen = 0.0;
@@ -34,22 +35,9 @@ void main()
             if (!(points[s].z > 0.0) || !photo_project(source, points[s], pixel, z))
                 continue;
             float share = photo_unhidden_share(source, photo_depths(source, pixel), z);
-            float hidden = share > 0.9 ? 1.0 : 8.0;
-            least = min(least, photo_penalty(source, points[s]) * hidden);
-            seen += 1.0 / hidden;
+            candidate_sample(share, photo_penalty(source, points[s]), least, seen);
         }
-        least = seen == 0.0 ? NOT_SEEN : least * (1.0 + 1.0 / max(seen, 0.1));
-        uint candidate = uint(i);
-        for (int c = 0; c < CANDIDATES; c++) {
-            if (least < best[c]) {
-                float b = best[c];
-                uint n = index[c];
-                best[c] = least;
-                index[c] = candidate;
-                least = b;
-                candidate = n;
-            }
-        }
+        candidate_insert(candidate_penalty(least, seen), i, best, index);
     }
     chosen = uvec2(index[0] | index[1] << 8 | index[2] << 16 | index[3] << 24,
                    index[4] | index[5] << 8 | index[6] << 16 | index[7] << 24);
