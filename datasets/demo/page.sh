@@ -56,8 +56,8 @@ HTML
 page_walk() {
     cat <<HTML
 <h2>A walk</h2>
-<p>Nobody photographed these views: every frame is painted from the photographs around it. Left a film,
-right the place itself, to walk through: drag to look, W A S D to move, ? for help.
+<p>Nobody photographed these views: every frame is painted from the photographs around it. A film,
+and the place itself to walk through: drag to look, W A S D to move, ? for help.
 <a href="walk.html">Open it alone</a>.</p>
 <div class="two walk">
 <video controls autoplay loop muted playsinline src="$(data_uri video/mp4 "$demo/walk.mp4")"></video>
@@ -84,7 +84,7 @@ HTML
 page_comparisons() {
     local stem name
     echo '<h2>Every photograph kept aside</h2>'
-    echo '<p>From left to right: the photograph; Oriel; its points alone, for comparison; and how'
+    echo '<p>The photograph; Oriel; its points alone, for comparison; and how'
     echo 'far Oriel is from the photograph, four times amplified (black: the same).</p>'
     for stem in "${stems[@]}"; do
         name=$(escape "$stem")
