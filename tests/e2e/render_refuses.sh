@@ -55,6 +55,10 @@ refuses 2 '\-\-out' "$oriel" render ws --at 0001
 refuses 2 'nonsense.*airieau' "$oriel" render ws --at 0001 --out out.png --method nonsense
 refuses 2 'nonsense.*splat_scale' "$oriel" render ws --at 0001 --out out.png --set nonsense=1
 refuses 2 'from 0.01 to 16' "$oriel" render ws --at 0001 --out out.png --set splat_scale=99
+refuses 2 'fill=ground do not go with weight=normal' "$oriel" render ws --at 0001 --out out.png --method orzan-surface \
+    --set fill=ground
+refuses 2 'fill=ground do not go with weight=princ' "$oriel" render ws --at 0001 --out out.png --method princ --set fill=depth
+refuses 2 'fill.*none.*room' "$oriel" render ws --at 0001 --out out.png --set fill=sand
 refuses 2 'no photograph 7777' "$oriel" render ws --at 7777 --out out.png
 refuses 2 'no photograph 7777' "$oriel" render ws --at 0001 --out out.png --exclude 7777
 refuses 2 'light 7777' "$oriel" render ws --at 0001 --out out.png --light 7777

@@ -45,8 +45,8 @@ in_two_parts stress "$oriel" stress synth --out parts "${one[@]}" "${small[@]}"
 grep -q '^0 rows measured, 3 used again' stdout.txt || fail "rows of the parts were not used"
 
 # The figure's silhouettes carve a hull, on which no method shows the points' own colours.
-runs 0 "$oriel" stress synth --out hull --axes silhouettes,unsynchronised,backgrounds --method ulr,points "${small[@]}"
-for axis in silhouettes unsynchronised backgrounds; do
+runs 0 "$oriel" stress synth --out hull --axes silhouettes,hull-cameras,unsynchronised,backgrounds --method ulr,points "${small[@]}"
+for axis in silhouettes hull-cameras unsynchronised backgrounds; do
     db $axis ulr | awk '!($1 > 20 && $2 < $1 - 0.8) { exit 1 }' || fail "wrong $axis cost nothing: $(db $axis ulr)"
 done
 

@@ -1,0 +1,51 @@
+#!/bin/bash
+# EXIF that tells one exposure of photographs that differ by stops, as that of copies may: it is said, and exposures are
+# estimated from the pictures. With a list of the true ones nothing is amiss.
+. "$2/tests/e2e/prepare_lib"
+monument 320x240 9 --exposures -1.5,0,1.5
+
+# Gives all photographs the EXIF of the first.
+python3 - "$work"/p/*.jpg <<'PY' || fail "EXIF was not copied"
+import sys
+
+def exif(data):
+    """Where the segment APP1 of a JPEG begins and ends."""
+    at = 2
+    while data[at + 1] != 0xE1:
+        at += 2 + int.from_bytes(data[at + 2:at + 4], "big")
+    return at, at + 2 + int.from_bytes(data[at + 2:at + 4], "big")
+
+first = None
+for name in sys.argv[1:]:
+    with open(name, "rb+") as file:
+        data = file.read()
+        start, end = exif(data)
+        first = first or data[start:end]
+        file.seek(0)
+        file.write(data[:start] + first + data[end:])
+        file.truncate()
+PY
+
+lies="do not fit the pictures, which differ from them by more than a stop"
+prepare=(prepare "$work/p" --out "$work/s" --quality draft --max-size 128)
+run 0 "${prepare[@]}"
+says "the exposures that EXIF tells $lies"
+says "--exposures FILE takes a list"
+# evs WORDS: exposures are from there, and most steps of the series are those that were taken.
+evs() {
+    jq -e --arg from "$1" '[.photographs[] | select(.exposure_from == $from) | .exposure_ev] | length == 9 and
+        ([range(0; 9; 3) as $i | .[$i + 1] - .[$i], .[$i + 2] - .[$i + 1] | select(. > 1.2 and . < 1.8)] | length >= 4)' \
+        "$work/s/scene.json" >"$work/jq" ||
+        fail "exposures are not from the $1: $(jq -c '[.photographs[] | [.exposure_from, .exposure_ev]]' "$work/s/scene.json")"
+}
+evs scene
+
+set -- -1.5 0 1.5
+for photo in "$work"/p/*.jpg; do
+    echo "$(basename "$photo"),$1"
+    set -- "$2" "$3" "$1"
+done >"$work/list"
+run 0 "${prepare[@]}" --resume --exposures "$work/list"
+grep -qF "$lies" "$work/err" && fail "a list that fits the pictures is taken for wrong"
+evs list
+finish
