@@ -152,7 +152,7 @@ class Walk {
 
     buildTools()
     {
-        const nav = this.navigator, help = buildHelp();
+        const nav = this.navigator;
         const toggle = id => () => this.toggle(id);
         const shown = id => () => !byId(id).hidden;
         const edits = Boolean(this.manifest.edits);
@@ -195,6 +195,7 @@ class Walk {
             full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
             help: {key: "?", run: () => help.show()},
         };
+        const help = buildHelp(key => Object.values(actions).some(action => action.key === key));
         this.tools = new Tools(actions);
         this.compare = new Compare(this.files, this.manifest.radiance);
         this.panel = new Panel({layers: this.picture.layers, layer: this.layer, tones: this.manifest.tones ||

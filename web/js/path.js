@@ -41,8 +41,10 @@ export class PathEditor {
             this.element.append(make("div", {className: "row"}, button(t.forVisitors, () =>
                 keep(this.keys.length > 1 ? orielPath(this.keys, this.duration) : undefined))));
         this.element.append(this.said);
-        if (tour)
+        if (tour) {
             this.load(t.title, JSON.stringify(tour));
+            this.said.textContent = ""; // nobody has asked for it
+        }
         this.fill();
     }
 
@@ -107,12 +109,14 @@ export class PathEditor {
 
     add()
     {
+        this.said.textContent = ""; // of a path that was another one
         this.keys.push(this.navigator.view);
         this.fill();
     }
 
     change(what)
     {
+        this.said.textContent = "";
         what(this.keys);
         this.fill();
         this.wake();

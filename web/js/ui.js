@@ -266,11 +266,13 @@ export class Compare {
 
 // --- words ---
 
-export function buildHelp()
+// has(key): is there something that this key does?
+export function buildHelp(has)
 {
     const dialog = byId("help"), list = make("dl"), title = make("h2", {textContent: text.helpTitle, tabIndex: -1});
     const fingersAlone = matchMedia("(any-pointer: coarse)").matches && !matchMedia("(any-pointer: fine)").matches;
-    for (const [keys, what] of fingersAlone ? text.touch : text.help)
+    const works = keys => !/^[A-Z](, [A-Z])*$/.test(keys) || keys.toLowerCase().split(", ").some(has);
+    for (const [keys, what] of fingersAlone ? text.touch : text.help.filter(([keys]) => works(keys)))
         list.append(make("dt", {textContent: keys}), make("dd", {textContent: what}));
     dialog.setAttribute("aria-label", text.helpTitle);
     dialog.append(title, list, make("p", {textContent: text.helpShare}), button(text.close, () => dialog.close()));
