@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from browser import Browser, Server
@@ -512,6 +513,21 @@ class Phone(unittest.TestCase):
             self.assertEqual(two["r"], one["r"])
             forward = sum((b - a) * f for a, b, f in zip(one["eye"], two["eye"], one["r"][6:]))
             self.assertGreater(forward, 0)
+            browser.js("oriel.navigator.calm = true; oriel.navigator.goHome(); oriel.wake()")
+            browser.settle()
+            start, target = view(), browser.js("return oriel.pick(200, 300)")
+            browser.tap(200, 300)
+            browser.settle()
+            self.assertEqual(view()["eye"], start["eye"])
+            time.sleep(0.5) # or else the next one is the second
+            browser.tap(200, 300, times=2)
+            browser.wait(f"return oriel.navigator.view.eye[0] !== {start['eye'][0]!r}", 60)
+            browser.settle()
+            self.assertLess(math.dist(view()["eye"], target), 0.9 * math.dist(start["eye"], target))
+            browser.js("document.getElementById('tool-help').click()")
+            self.assertEqual(browser.js("""
+                const {text} = await import("./js/strings.js"), rows = [...document.querySelectorAll("#help dt")];
+                return rows.map(row => row.textContent).join() === text.touch.map(([what]) => what).join();"""), True)
             self.assertEqual(browser.errors(), [])
         finally:
             browser.close()

@@ -19,9 +19,10 @@ from client import Walk as Program
 import firefox
 
 ORIEL, TOOL, SCENE, SITE, RADIANCE, RADIANCE_SITE = sys.argv[1:7]
-AXE = os.environ.get("ORIEL_AXE", "node_modules/axe-core/axe.min.js")
+AXE = os.environ.get("ORIEL_NODE_MODULES", "node_modules") + "/axe-core/axe.min.js"
 WIDTH, HEIGHT = 360, 240
-SIZES = ((320, 568), (390, 844), (640, 360), (760, 900), (844, 390), (1024, 768), (1440, 900), (2560, 1440))
+SIZES = ((320, 568), (360, 640), (390, 844), (480, 800), (600, 960), (640, 360), (768, 1024), (844, 390), (1024, 768),
+         (1440, 900), (2560, 1440))
 
 
 class Visitors(unittest.TestCase):
@@ -70,6 +71,20 @@ class Visitors(unittest.TestCase):
     def hidden(self, id_):
         return self.js(f"return document.getElementById('{id_}').hidden")
 
+    def lay_out(self, *ids):
+        """In windows of all sizes these panels, photographs and a note neither cover one another nor are cut."""
+        self.js("""
+            oriel.drawFrame = () => { oriel.refined = true; oriel.showState(); }; // where things are, without a picture
+            oriel.navigator.at = null;
+            oriel.compare.on = true; // for a hint""")
+        for size in SIZES:
+            self.browser.resize(*size)
+            self.browser.wait(f"return innerWidth === {size[0]} && innerHeight === {size[1]}")
+            found, columns = self.js(LAYOUTS, ids)
+            self.assertEqual(found, [], size)
+            self.assertLess(max(columns) - min(columns), len(columns) + 1, size) # no single one in a row
+            self.assertGreaterEqual(self.js("return document.querySelector('#tools button').offsetWidth"), 24)
+
 
 class Page(Visitors):
     def test_resized_at_rest(self):
@@ -79,11 +94,25 @@ class Page(Visitors):
             self.browser.wait(f"return oriel.picture.renderer.frame.width === {width} && "
                               f"oriel.picture.canvas.height === {height}", 60)
 
+    def test_other_pixels_at_rest(self):
+        """On another screen a window may keep its size: then it hears of its pixels alone. Chromium tells of an
+        imitated screen together with another size, which the page does not hear of here."""
+        script = self.browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {
+            "source": "window.addEventListener('resize', event => event.stopImmediatePropagation());"})
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument", script)
+        self.open()
+        for i, ratio in enumerate((2, 1.25, 1)): # each is watched for anew
+            width = WIDTH + 4 * i + 4
+            self.browser.resize(width, HEIGHT, ratio)
+            self.browser.wait(f"return oriel.picture.renderer.frame.width === {round(ratio * width)} && "
+                              f"oriel.picture.canvas.height === {round(ratio * HEIGHT)}", 60)
+
     def test_other_layouts(self):
         self.open()
         for code, key in (("KeyW", "ц"), ("KeyW", ","), ("KeyW", "z")): # Cyrillic, Dvorak, AZERTY
             self.assertTrue(self.moves(code, key), key)
-        for code, key, id_ in (("KeyT", "е", "thumbs"), ("KeyI", "ш", "panel"), ("KeyM", "ь", "map")):
+        for code, key, id_ in (("KeyT", "е", "thumbs"), ("KeyI", "ш", "panel"), ("KeyM", "ь", "map"),
+                               ("KeyV", "k", "path")): # of Dvorak, by its letter
             self.browser.keys(code, key)
             self.assertFalse(self.hidden(id_), id_)
         at = "return oriel.navigator.at && oriel.navigator.at.number"
@@ -95,6 +124,8 @@ class Page(Visitors):
         self.assertEqual(self.js(at), start)
         self.browser.keys("PageDown", "PageDown")
         self.assertNotEqual(self.js(at), start)
+        self.browser.keys("PageUp", "PageUp") # of Dvorak, whose comma moves
+        self.assertEqual(self.js(at), start)
 
     def test_command_key_of_a_mac(self):
         self.open()
@@ -145,6 +176,8 @@ class Page(Visitors):
             self.assertEqual(self.js("""
                 return import("./js/strings.js").then(m => [typeof m.text.benchmark, m.text.help.length]);"""),
                 ["string", 23])
+        keys = self.js(HELP_KEYS) # of what there is: annotations to go through, but neither lengths nor a maker
+        self.assertEqual([key in keys for key in ("G", "U", "N, O", "T, M, I")], [True, False, False, True])
 
     def test_tour_of_the_annotations(self):
         self.open()
@@ -167,26 +200,12 @@ class Page(Visitors):
 
     def test_panels_do_not_overlap(self):
         self.open()
-        for size in SIZES:
-            self.browser.resize(*size)
-            for id_ in ("panel", "map", "path", "thumbs"):
-                self.js(f"document.getElementById('{id_}').hidden = true; oriel.toggle('{id_}')")
-            self.js("document.querySelector('.mark').click()")
-            for id_ in (None, "panel", "map", "path"):
-                if id_ and self.hidden(id_):
-                    self.js(f"oriel.toggle('{id_}')")
-                self.assertEqual(self.js(OVERLAPS), [], (size, id_))
-                self.assertEqual(self.js("return document.documentElement.scrollWidth <= innerWidth"), True)
-            columns = self.js("""
-                const rows = Map.groupBy([...document.querySelectorAll("#tools button")], b => b.offsetTop);
-                return [...rows.values()].map(row => row.length);""")
-            self.assertLess(max(columns) - min(columns), len(columns) + 1, size) # no single one in a row
-            self.assertGreaterEqual(self.js("return document.querySelector('#tools button').offsetWidth"), 24)
+        self.lay_out("panel", "map", "path")
 
     def test_screen_readers(self):
-        """By axe-core, of npm, where it is there."""
+        """By axe-core, which visitors.sh takes from npm."""
         if not os.path.exists(AXE):
-            self.skipTest(f"{AXE} is missing")
+            self.skipTest("axe-core is missing, which npm installs: screen readers are not tested")
         self.open()
         with open(AXE) as file:
             self.js(file.read())
@@ -477,6 +496,11 @@ class Live(Visitors):
         self.browser.settle()
         self.assertEqual(self.js("return document.getElementById('problem').textContent"), "")
 
+    def test_panels_do_not_overlap(self):
+        self.open(address=self.walk().address[:-1])
+        self.js("oriel.path.add()")
+        self.lay_out("panel", "map", "path", "method", "maker", "ruler")
+
     def test_tour_and_lengths_of_the_maker(self):
         before = self.settings()
         self.addCleanup(self.restore, before)
@@ -514,12 +538,38 @@ class Live(Visitors):
         said = self.js("return document.getElementById('length').textContent")
         self.assertAlmostEqual(float(said.split()[0]) / (100 if said.endswith("cm") else 1), metres, delta=0.02 * metres)
         self.browser.wait("return document.getElementById('line').points.numberOfItems === 2")
+        self.follow_published_tour()
+
+    def follow_published_tour(self):
+        """What a visitor meets of it where no server draws."""
+        with tempfile.TemporaryDirectory() as work:
+            run(ORIEL, "publish", SCENE, "--out", f"{work}/site", "--quiet")
+            server = Server(f"{work}/site")
+            self.addCleanup(server.close)
+            self.open(address=server.address)
+            self.assertFalse(self.hidden("tool-tour"))
+            start = self.eye()
+            self.browser.keys("KeyG", "g")
+            self.browser.wait("return !document.getElementById('note').hidden") # that the path passes
+            self.browser.wait(f"return oriel.navigator.view.eye[0] !== {start[0]!r}")
+            self.assertEqual(self.js("return document.getElementById('tool-tour').getAttribute('aria-pressed')"), "true")
+            self.browser.keys("KeyG", "g")
+            self.browser.settle() # comes to rest
+            paused = self.eye()
+            share = float(self.js("return oriel.path.scrubber.value"))
+            self.assertGreater(share, 0)
+            self.assertLess(share, 1)
+            self.browser.keys("KeyG", "g") # goes on from there
+            self.browser.wait(f"return oriel.navigator.view.eye[0] !== {paused[0]!r}")
+            self.assertGreater(float(self.js("return oriel.path.scrubber.value")), share)
+            self.browser.keys("KeyG", "g")
 
     def test_held_out_photographs_are_compared(self):
         self.open(address=self.walk().address[:-1])
         self.js("oriel.navigator.goTo(oriel.photos.find(p => p.held_out)); oriel.toggleCompare()")
         self.browser.wait("return document.getElementById('right-side').textContent === 'Photograph, held out'")
         self.assertEqual(self.js("return document.getElementById('left-side').textContent"), "Drawn")
+        self.assertLessEqual({"G", "U", "N, O"}, set(self.js(HELP_KEYS)))
 
     def settings(self):
         with open(f"{SCENE}/walk.json") as file:
@@ -657,12 +707,16 @@ return cameras.map((camera, i) => {
 });
 """
 
+HELP_KEYS = "return [...document.querySelectorAll('#help dt')].map(row => row.textContent)"
+
 # What the album of a small window shows when it is scrolled: all but the photograph and its buttons.
 SCROLLS = [f"{name} leaves the window" for name in ("thumbs", "hint", "note", "attribution")]
 
 
-# Pairs of what lies over the picture that cover one another, and what leaves the window.
+# Pairs of what lies over the picture that cover one another, what leaves the window, and what is wider than its box.
 OVERLAPS = """
+const wide = [...document.querySelectorAll("html, #over, #over .panel, #tools, #help")]
+    .filter(e => e.scrollWidth > e.clientWidth + 1).map(e => `${e.id || "page"} is wider than its box`);
 const boxes = [...document.querySelectorAll("#over .panel, #tools, #thumbs, #map, #head, #hint, #album, #attribution")]
     .filter(e => e.offsetWidth && e.textContent + e.id !== "").map(e => [e.id, e.getBoundingClientRect()]);
 const found = [];
@@ -674,8 +728,35 @@ boxes.forEach(([a, p], i) => {
             Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 0.5)
             found.push(`${a} and ${b}`);
 });
-return found;
+const help = document.getElementById("help"), {left, top, right, bottom} = help.getBoundingClientRect();
+if (help.open && (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight))
+    found.push("help leaves the window");
+return [...found, ...wide];
 """
+
+# What is wrong with each of these panels beside photographs and a note, and with the help; how many tools there are
+# in each row.
+LAYOUTS = """
+const found = [], byId = id => document.getElementById(id);
+const look = what => found.push(...(() => {%s})().map(wrong => `${what}: ${wrong}`));
+oriel.resized();
+for (const id of [...arguments[0], "thumbs"])
+    byId(id).hidden = true;
+oriel.toggle("thumbs");
+document.querySelector(".mark").click();
+for (const id of ["note", ...arguments[0]]) {
+    oriel.reveal(id);
+    oriel.showState();
+    look(id);
+    if (byId("hint").textContent === "")
+        found.push("no hint");
+}
+byId("tool-help").click();
+look("help");
+byId("help").close();
+const rows = Map.groupBy([...document.querySelectorAll("#tools button")], b => b.offsetTop);
+return [found, [...rows.values()].map(row => row.length)];
+""" % OVERLAPS
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[7:], verbosity=2)
