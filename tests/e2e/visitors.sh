@@ -20,6 +20,6 @@ if [ ! -e "${ORIEL_NODE_MODULES:-nowhere}/axe-core" ]; then
     timeout 60 npm install --prefix "$work" --no-audit --no-fund --silent --ignore-scripts --fetch-retries 1 \
         axe-core@4.14.1 >npm.txt 2>&1 || echo "npm is missing or reaches no registry: screen readers are not tested"
 fi
-timeout 900 /usr/bin/python3 -B "$source/tests/web/test_visitors.py" "$oriel" \
+timeout 1800 /usr/bin/python3 -B "$source/tests/web/test_visitors.py" "$oriel" \
     "$tools/bench_web_pictures" "$work/made" "$work/site" "$work/radiance" \
     "$work/radiance-site" 2>&1
