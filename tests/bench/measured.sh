@@ -471,9 +471,15 @@ page_radiance() {
     local truth='bench_truth_scene WORK/series WORK/series-truth WORK/series-scene 1 5'
     local error='bench_radiance_error WORK/series-scene WORK/series-truth --bound'
     local cost='bench_merge_time WORK/series-scene'
+    local again_synth='oriel synth monument --out WORK/found --size 384x256 --count 15 --contrast 3 --exposures -3,0,3 --quiet'
+    local prepare='oriel prepare WORK/found --out WORK/found-scene --test-list 0008.jpg --quiet'
+    local found='bench_radiance_error WORK/found-scene WORK/found-truth'
     [ -e "$work/series" ] || run "$synth" >&2
     [ -e "$work/series-scene" ] || run "$truth" >&2
     run "$error" >"$work/radiance.txt"
+    [ -e "$work/found" ] || run "$again_synth" >&2
+    [ -e "$work/found-scene" ] || run "$prepare" >&2
+    run "$found" >"$work/radiance_found.txt"
     run "$cost" >"$work/merge_time.txt"
     local scene again
     scene=$(scene_names fountain)
@@ -491,8 +497,13 @@ step of one stop between neighbouring pixels of the truth; the last column has t
 the true picture itself is when it is moved by a part of a pixel.
 END
     command_block "$synth" "$truth" "$error"
-    printf '| picture | RMSE | median | 90 %% below | RMSE away from edges | below 1/64 of white |\n|---|---|---|---|---|---|\n'
+    local head='| picture | RMSE | median | 90 %% below | RMSE away from edges | below 1/64 of white |\n|---|---|---|---|---|---|\n'
+    printf "$head"
     radiance_rows "$work/radiance.txt"
+    printf '\n**With cameras and points that were found** in the photographs, so that their errors count, too\n'
+    command_block "$again_synth" "$prepare" "$found"
+    printf "$head"
+    radiance_rows "$work/radiance_found.txt"
     printf '\n**Time of both merges**, processor time of a view\n'
     command_block "$cost"
     sed 's/^/    /' "$work/merge_time.txt"
