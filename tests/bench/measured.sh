@@ -360,8 +360,10 @@ stress_matrix() { # FILE
 page_stress() {
     local synth='oriel stress synth --out WORK/stress/synth --views 1 --quiet'
     local real='oriel stress SCENES/NAME --out WORK/stress/NAME --axes photographs,angle --views 1 --quiet'
+    local pairs='oriel stress synth --out WORK/stress/paired --axes outliers,pose,angle --views 1 --method oriel,airieau,ulr,orzan-view,li,paired --quiet'
     local name report=$work/stress/synth/stress.json
     run "$synth" >&2
+    run "$pairs" >&2
     head_of "How much methods lose" "synthetic, $(list $(scene_names fountain sakharov temple))" "$report"
     cat <<'END'
 
@@ -371,6 +373,9 @@ says where each begins. [Failure modes](../how/failure-modes.md) says why.
 END
     command_block "$synth"
     stress_matrix "$report"
+    printf '**Weights of papers on the proxy of `oriel`** (`+oriel`), beside the same methods as they are\n'
+    command_block "$pairs"
+    stress_matrix "$work/stress/paired/stress.json"
     printf '**The unchanged scene**: PSNR in dB, SSIM, FLIP and flicker\n\n'
     print_table "$report" '
       [.rows[] | select(.axis == "photographs" and .severity == 0)] as $rows
