@@ -42,7 +42,8 @@ step() {
 run_tests() {
     local dir=$1 log=$1/ctest.log line
     shift
-    ctest --test-dir "$dir" --output-on-failure "$@" | tee "$log"
+    # Two at a time: most end-to-end tests keep one core busy.
+    ctest --test-dir "$dir" --output-on-failure -j 2 "$@" | tee "$log"
     [ "${PIPESTATUS[0]}" -eq 0 ] || failed+=("tests in $dir")
     line=$(grep -E '^[0-9]+% tests passed' "$log")
     local bad total away
