@@ -33,7 +33,7 @@ static const double FLAT_MAX = 0.3, FLOOR_EV_MAX = 2.1;
 static const double SMOOTHNESS = 1e-6;
 static const double PULL = 1e-3;        // regularization of the terms: a solution always exists
 static const double OFFSET_SIGMA = 0.2; // of a photograph's log exposure from the known value
-static const double STRETCH_MAX = 0.03;
+static const double STRETCH_MAX = 0.03; // of the steps between exposures, which sRGB is forgiven
 static const double FIRM = 1e8;         // weight of equality constraints
 static const double MUST_GAIN = 0.9;    // greatest ratio of the curve's spread to that of sRGB
 // The least rise of log exposure per 8-bit value, which keeps the curve monotone.

@@ -7,7 +7,6 @@
 #include "bridge/bridge.h"
 #include "core/color.h"
 #include "core/memory.h"
-#include "core/order.h"
 #include "oriel/image.h"
 #include "preprocess/expose/expose.h"
 #include "preprocess/expose/response.h"
@@ -29,27 +28,26 @@ static void exposures_finish(struct exposures *e)
     free(e->ev);
 }
 
-// Photographs less than ORL_EXPOSURE_STEP_EV apart are of one exposure.
+// The series of the photographs that take part, each with the exposure of its darkest photograph.
 static enum orl_result find_exposures(const struct orl_log *log, const struct orl_response_photo *photos,
                                       size_t photo_count, struct exposures *e)
 {
-    size_t used = 0;
+    struct orl_exposure *series = orl_array(log, photo_count, sizeof *series);
     *e = (struct exposures){.of = orl_array(log, photo_count, sizeof *e->of),
                             .ev = orl_array(log, photo_count, sizeof *e->ev)};
-    ORL_TRY_MEMORY(e->of && e->ev);
-    for (size_t i = 0; i < photo_count; i++)
-        if (photos[i].use)
-            e->ev[used++] = photos[i].ev;
-    qsort(e->ev, used, sizeof *e->ev, orl_order_doubles);
-    for (size_t i = 0; i < used; i++)
-        if (!e->count || e->ev[i] - e->ev[e->count - 1] >= ORL_EXPOSURE_STEP_EV)
-            e->ev[e->count++] = e->ev[i];
-    for (size_t i = 0; i < photo_count; i++) {
-        e->of[i] = photos[i].use ? 0 : -1;
-        while (photos[i].use && e->of[i] + 1 < e->count && e->ev[e->of[i] + 1] <= photos[i].ev)
-            e->of[i]++;
+    enum orl_result result = series && e->of && e->ev ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
+        series[i] = (struct orl_exposure){.known = photos[i].use, .ev = photos[i].ev};
+        e->ev[i] = INFINITY;
     }
-    return ORL_OK;
+    ORL_THEN(result, orl_exposures_group(log, series, photo_count, ORL_EXPOSURE_STEP_EV, &e->count));
+    for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
+        e->of[i] = photos[i].use ? series[i].series : -1;
+        if (photos[i].use)
+            e->ev[e->of[i]] = fmin(e->ev[e->of[i]], photos[i].ev);
+    }
+    free(series);
+    return result;
 }
 
 // Does sRGB have what is seen at one exposure all black, or all white, at another?
