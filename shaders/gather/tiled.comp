@@ -50,7 +50,7 @@ void consider(int i, photo source, spot s, inout ranking r)
 vec4 look(ranking r, int k, spot s)
 {
     sight one = r.best[k];
-    vec3 color = photo_sample(photo_at(one.index), one.pixel, one.mip).rgb;
+    vec3 color = photo_ranked(photo_at(one.index), k, one.pixel, one.mip);
     float weight = sight_weight(r, k, s);
     return weight > 0.0 ? vec4(color, weight) : vec4(0.0);
 }
@@ -80,6 +80,11 @@ void main()
             consider(i, source, spots[k], rankings[k]);
         c++;
         i = c < asked ? chosen[list + c] : -1;
+        // Until each pixel has its photographs and the penalty of the first one left out.
+        float left_out = 0.0;
+        for (int k = 0; k < 4; k++)
+            left_out = max(left_out, spots[k].p.z > 0.0 ? rankings[k].next : 0.0);
+        i = left_out < NOT_SEEN ? -1 : i;
     } while (i >= 0);
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt

@@ -89,7 +89,7 @@ void main()
     int row = first_cost(cell);
     imageStore(estimated, cell, vec4(estimate));
     if (estimate == 0.0) {
-        for (int k = 0; k < planes; k++)
+        for (int k = 0; k < PLANES; k++)
             costs[row + k] = CLOSED;
         return;
     }
@@ -97,7 +97,7 @@ void main()
     vec3 ray = vec3((centre - view_focal.zw) / view_focal.xy, 1.0);
     ivec2 tile = cell * CELL / tile_side;
     int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
-    for (int first = 0; first < planes; first += AT_ONCE) {
+    for (int first = 0; first < PLANES; first += AT_ONCE) {
         opinion opinions[AT_ONCE];
         for (int n = 0; n < AT_ONCE; n++)
             opinions[n] = opinion(vec4(0.0), 0.0, 0.0, 0.0);
@@ -111,7 +111,7 @@ void main()
             c++;
             i = c < min(asked, ASKED) ? chosen[list + c] : -1;
         } while (i >= 0);
-        for (int n = 0; n < AT_ONCE && first + n < planes; n++)
+        for (int n = 0; n < AT_ONCE && first + n < PLANES; n++)
             costs[row + first + n] = cost_of(opinions[n]) + PRIOR * min(float(first + n) / FAR, 1.0);
     }
 }

@@ -20,12 +20,12 @@ void main()
     if (any(greaterThanEqual(cell, cells_across_down())))
         return;
     int row = first_cost(cell), best = 0;
-    for (int k = 1; k < planes; k++)
+    for (int k = 1; k < PLANES; k++)
         best = sums[row + k] < sums[row + best] ? k : best;
     float least = sums[row + best];
-    float before = sums[row + max(best - 1, 0)], after = sums[row + min(best + 1, planes - 1)];
+    float before = sums[row + max(best - 1, 0)], after = sums[row + min(best + 1, PLANES - 1)];
     float bend = before + after - 2.0 * least;
-    bool between = best > 0 && best < planes - 1 && bend > 0.0;
+    bool between = best > 0 && best < PLANES - 1 && bend > 0.0;
     float off = between ? 0.5 * (before - after) / bend : 0.0;
     bool better = sums[row] - least > CLEARLY && imageLoad(estimated, cell).r > 0.0;
     imageStore(picked, cell, vec4(better ? plane_share(float(best) + off) : 1.0));

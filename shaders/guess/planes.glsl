@@ -1,7 +1,7 @@
 // The depths that are tried where the surface has none. The view is divided into cells of CELL pixels, and each
-// open cell, which has estimated background depth alone, takes one of gather_block's `planes`: plane
-// 0 is its estimate, the last one is at infinity, and inverse depth falls by equal steps.
-const int PLANES_MAX = 32; // of the option guess_depths
+// open cell, which has estimated background depth alone, takes one of PLANES: plane 0 is its estimate, the last
+// one is at infinity, and inverse depth falls by equal steps. Their number is part of the program, since
+// software renderers keep arrays of constant indices in registers.
 
 const float CLOSED = -1.0; // cost of the planes of a cell that is not open
 
@@ -13,11 +13,11 @@ ivec2 cells_across_down()
 // Index of the first of a cell's costs.
 int first_cost(ivec2 cell)
 {
-    return (cell.y * cells_across_down().x + cell.x) * planes;
+    return (cell.y * cells_across_down().x + cell.x) * PLANES;
 }
 
 // Inverse depth of a plane as a share of the estimate's.
 float plane_share(float k)
 {
-    return 1.0 - k / float(planes - 1);
+    return 1.0 - k / float(PLANES - 1);
 }

@@ -22,22 +22,22 @@ void main()
                                                                 : cells_across_down().y;
     if (line >= (ALONG < 2 ? cells_across_down().y : cells_across_down().x))
         return;
-    float before[PLANES_MAX], now[PLANES_MAX], least = 0.0;
-    for (int k = 0; k < planes; k++)
+    float before[PLANES], now[PLANES], least = 0.0;
+    for (int k = 0; k < PLANES; k++)
         before[k] = 0.0;
     for (int s = 0; s < length; s++) {
         int at = (ALONG & 1) == 0 ? s : length - 1 - s, row = first_cost(ALONG < 2 ? ivec2(at, line)
                                                                                  : ivec2(line, at));
         bool closed = costs[row] == CLOSED; // the path begins anew behind it
         float next = 1e30;
-        for (int k = 0; k < planes; k++) {
+        for (int k = 0; k < PLANES; k++) {
             float best = min(min(before[k], least + JUMP),
-                             min(before[max(k - 1, 0)], before[min(k + 1, planes - 1)]) + STEP);
+                             min(before[max(k - 1, 0)], before[min(k + 1, PLANES - 1)]) + STEP);
             now[k] = closed ? 0.0 : costs[row + k] + best - least;
             next = min(next, now[k]);
             sums[row + k] = now[k] + (ALONG == 0 ? 0.0 : sums[row + k]);
         }
-        for (int k = 0; k < planes; k++)
+        for (int k = 0; k < PLANES; k++)
             before[k] = now[k];
         least = next;
     }

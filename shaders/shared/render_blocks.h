@@ -100,6 +100,9 @@ ORL_BLOCK(gather_block)
     VEC4(view_focal);    // fx fy cx cy
     VEC4(ground);        // as in image_block
     VEC4(slot_size);     // width, height of a photograph's slot; width, height of a depth slot
+    // Rows of rotation | translation: of the room to a space where its walls are at -1 and 1, or the shell
+    // has radius 1.
+    VEC4S(local_from_view, 3);
     IVEC2(view_size);    // pixels
     INT(photo_count);    // photographs of this dispatch
     INT(tiles_across);   // tiles in each row of the view
@@ -112,12 +115,8 @@ ORL_BLOCK(gather_block)
     FLOAT(model_variance);   // of radiance: variance of the relative error at full exposure
     FLOAT(min_radiance);   // least radiance that differs from darkness
     FLOAT(billboard_half);   // half the width of a billboard, scene units
-    INT(planes);             // planes of shaders/guess
     FLOAT(min_inverse);    // inverse depth of the farthest one
     INT(tile_side);          // pixels of a tile each way, even
-    // Rows of rotation | translation: of the room to a space where its walls are at -1 and 1, or the shell
-    // has radius 1.
-    VEC4S(local_from_view, 3);
     RENDER_OPTIONS_MEMBER;
 };
 #endif

@@ -294,6 +294,13 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
     return result;
 }
 
+void orl_tex_mix_levels(struct orl_tex *tex, bool mix)
+{
+    if (tex->params.linear && tex->params.levels > 1)
+        glTextureParameteri(tex->id, GL_TEXTURE_MIN_FILTER,
+                            mix ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR_MIPMAP_NEAREST);
+}
+
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
 {
     // A shader may have written level 0. Drivers read it as a texture, by drawing or by copying.

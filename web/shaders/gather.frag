@@ -61,7 +61,7 @@ void main()
         float weight = sight_weight(r, k, s);
         samples[k] = vec4(0.0);
         if (weight > 0.0)
-            samples[k] = vec4(photo_sample(photo_at(one.index), one.pixel, one.mip).rgb, weight);
+            samples[k] = vec4(photo_ranked(photo_at(one.index), k, one.pixel, one.mip), weight);
     }
     float blur;
     vec4 color = blend(s, r, samples, blur);

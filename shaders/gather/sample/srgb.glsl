@@ -33,3 +33,17 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
 #endif
     return vec4(photo_aligned(source, pixel, color), 1.0);
 }
+
+// Of a pixel's best photographs: as many, which nearly make up the picture, are read with the filter that
+// is asked for, the others with one fetch.
+const int SHARP = 2;
+
+// The sample of the k-th best photograph, from 0.
+vec3 photo_ranked(photo source, int k, vec2 pixel, float mip)
+{
+    if (k < SHARP)
+        return photo_sample(source, pixel, mip).rgb;
+    // The level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM.
+    float level = floor(max(mip - 0.3, 0.0));
+    return photo_aligned(source, pixel, photo_bilinear(source, pixel, level).rgb);
+}

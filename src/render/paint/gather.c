@@ -142,6 +142,8 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
         memcpy(g->list[i].selected, frame->selected[first + i], sizeof g->list[i].selected);
     }
     orl_buf_write(g->photos, 0, count * sizeof *g->list, g->list);
+    // The bicubic filter reads whole levels.
+    orl_tex_mix_levels(photos->color, params->sampling != ORL_SAMPLING_BICUBIC);
     bool fades = strcmp(params->weight, "lumigraph") == 0;
     struct gather_block block = {
         .slot_size = {(float)color->width, (float)color->height, (float)depth->width,

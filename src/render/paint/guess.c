@@ -78,8 +78,8 @@ enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
 
 static struct orl_prog *program(const struct frame *frame, const char *file, const char *along)
 {
-    char defines[32];
-    snprintf(defines, sizeof defines, "CELL %d\n%s", cell_side(frame), along);
+    char defines[48];
+    snprintf(defines, sizeof defines, "CELL %d\nPLANES %d\n%s", cell_side(frame), plane_count(frame), along);
     return orl_gather_prog(frame, file, NULL, defines);
 }
 
@@ -108,7 +108,6 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     const struct guess *guess = &frame->paint->guess;
     double distance = frame->scene->photo_distance > 0 ? frame->scene->photo_distance : 1;
     struct gather_block planes = *block;
-    planes.planes = plane_count(frame);
     planes.min_inverse = (float)(1 / (ORL_GUESS_FARTHEST * distance));
     int width = guess->picked->params.width, height = guess->picked->params.height;
     struct orl_dispatch d = *choice;
