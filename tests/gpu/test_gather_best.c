@@ -137,6 +137,57 @@ static void what_is_small_in_a_tile_is_painted(void **state)
     teardown(&f);
 }
 
+// A plate hides all of a tile's wall from the green photograph, which is nearer to the view. A list of one
+// photograph must name the red one, which sees the wall.
+static void a_tile_lists_a_photograph_that_sees_it(void **state)
+{
+    (void)state;
+    enum { WALL = 120, PLATE = 40, TILE = 16 };
+    struct fixture f;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, WALL * WALL + PLATE * PLATE), ORL_OK);
+    set_square(&f.scene.points, 0, WALL, 6, 0, 4, red);
+    // The tile shows the wall from -0.8 to 0.8, and the view shows the plate right of it.
+    set_square(&f.scene.points, WALL * WALL, PLATE, 1, 1, 2, blue);
+    add_photo(&f, look_from(2, 0, 0, 96, 40), green);
+    add_photo(&f, look_from(-2.6, 0, 0, 96, 40), red);
+    struct orl_render_params params = best();
+    params.candidates = params.photos_per_pixel = 1;
+    params.fill = ORL_FILL_NONE;
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    for (int i = TILE; i < 2 * TILE; i++) {
+        assert_float_equal(color_at(&frame, i, i)[0], 1, 1e-3);
+        assert_float_equal(frame.coverage.f32[i * 48 + i], 1, 0);
+    }
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// The two best photographs begin in the middle of four pixels that are made at once. The third one paints
+// those that they do not show.
+static void each_pixel_gets_its_photographs(void **state)
+{
+    (void)state;
+    enum { FIRST = 17 }; // column that the best photographs show
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view crop = look(0, 0, 0);
+    crop.camera.cx -= FIRST;
+    add_photo(&f, crop, red);
+    add_photo(&f, crop, red);
+    add_photo(&f, look(0.4, 0, 0), green);
+    struct orl_render_params params = best();
+    params.photos_per_pixel = 1;
+    params.fill = ORL_FILL_NONE;
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    for (int y = 18; y < 30; y++) {
+        assert_float_equal(color_at(&frame, FIRST - 1, y)[1], 1, 1e-3);
+        assert_float_equal(color_at(&frame, FIRST + 1, y)[0], 1, 1e-3); // at FIRST they fade out
+    }
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Two of three agree: the third, though no worse, loses weight.
 static void outliers_lose(void **state)
 {
@@ -345,6 +396,8 @@ int main(void)
         cmocka_unit_test(hidden_photographs_do_not_paint),
         cmocka_unit_test(a_small_move_changes_little),
         cmocka_unit_test(what_is_small_in_a_tile_is_painted),
+        cmocka_unit_test(a_tile_lists_a_photograph_that_sees_it),
+        cmocka_unit_test(each_pixel_gets_its_photographs),
         cmocka_unit_test(outliers_lose),
         cmocka_unit_test(many_photographs_leave_the_best),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
