@@ -188,6 +188,98 @@ static void each_pixel_gets_its_photographs(void **state)
     teardown(&f);
 }
 
+// The last photograph becomes black but for a line, one pixel wide.
+static void paint_line(struct fixture *f, int at, const uint8_t color[3])
+{
+    const struct orl_camera *camera = &f->photos[f->scene.photo_count - 1].view.camera;
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, camera->width, camera->height, 3, ORL_PIXEL_U8), ORL_OK);
+    memset(image.u8, 0, (size_t)(3 * camera->width * camera->height));
+    for (int y = 0; y < camera->height; y++)
+        memcpy(&image.u8[3 * (y * camera->width + at)], color, 3);
+    repaint_photo(f, &image);
+}
+
+// The view's pixel lies a quarter of a pixel beside a line in each of three photographs. The Catmull-Rom
+// filter gives the line more weight there than the bilinear one, with which the third is read.
+static void the_two_best_are_read_sharply(void **state)
+{
+    (void)state;
+    enum { AT = 18 };
+    const uint8_t *const colors[3] = {red, green, blue};
+    struct fixture f;
+    setup(&f, false);
+    double x[3], w[3], sum = 0;
+    struct orl_render_params params = best();
+    for (int i = 0; i < 3; i++) {
+        x[i] = -0.025 - 0.1 * i; // 0.1 on the wall is a pixel
+        add_photo(&f, look(x[i], 0, 0), colors[i]);
+        paint_line(&f, AT + i, colors[i]);
+        w[i] = pow(penalty(0, x[0], AT, 26) / penalty(0, x[i], AT, 26), (double)params.sharpness);
+        sum += w[i];
+    }
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    const float *c = color_at(&frame, AT, 26);
+    const double sharp = 1 + 0.25 * 0.25 * (-2.5 + 1.5 * 0.25), plain = 0.75;
+    for (int i = 0; i < 3; i++)
+        assert_float_equal(c[i], w[i] / sum * (i < 2 ? sharp : plain), 4e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// A photograph that is `finer` times as fine as the view, with a line of one pixel. The centre of the
+// view's pixel LINE_AT is at the line's.
+enum { LINE_AT = 24, LINE = 110, FINE_SIDE = 192 };
+
+static void add_fine_photo(struct fixture *f, double finer)
+{
+    struct orl_view view = look_from(0, 0, 0, FINE_SIDE, 40 * finer);
+    view.camera.cx = LINE + 0.5 - finer * (LINE_AT + 0.5 - 24);
+    add_photo(f, view, blue);
+    paint_line(f, LINE, blue);
+}
+
+// At the line, in the level of pixels that are twice as large: the line is half of such a pixel, whose
+// centre is a quarter of it away. In the next level it is a quarter of a pixel, and the centre an eighth away.
+static const double line_of_two = 0.75 / 2, line_of_four = 0.875 / 4;
+
+// The third best photograph is read from the level of which one sample is about as wide as a pixel of
+// the view, and brought to the scene's exposure as the others are.
+static void the_third_is_read_from_one_level(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    static const uint8_t black[3] = {0, 0, 0};
+    for (int i = 0; i < 2; i++)
+        add_photo(&f, look_from(0, 0, 0, FINE_SIDE, 180), black);
+    add_fine_photo(&f, 4.5); // log2 is 2.17
+    for (int c = 0; c < 3; c++)
+        f.photos[2].gain[c] = 0.5f;
+    struct orl_render_params params = best();
+    params.alignment = ORL_ALIGNMENT_ON;
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    double c = line_of_two, aligned = 0.5 * c / (1 - 0.5 * c * c * c); // see srgb.glsl
+    assert_float_equal(color_at(&frame, LINE_AT, 24)[2], aligned / 3, 2e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// With the bilinear filter, levels are mixed where the right one is four fifths of the way to the next.
+static void the_bilinear_filter_mixes_levels(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    add_fine_photo(&f, pow(2, 1.8));
+    struct orl_render_params params = best();
+    params.sampling = ORL_SAMPLING_BILINEAR;
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    assert_float_equal(color_at(&frame, LINE_AT, 24)[2], (line_of_two + line_of_four) / 2, 0.01);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // Two of three agree: the third, though no worse, loses weight.
 static void outliers_lose(void **state)
 {
@@ -398,6 +490,9 @@ int main(void)
         cmocka_unit_test(what_is_small_in_a_tile_is_painted),
         cmocka_unit_test(a_tile_lists_a_photograph_that_sees_it),
         cmocka_unit_test(each_pixel_gets_its_photographs),
+        cmocka_unit_test(the_two_best_are_read_sharply),
+        cmocka_unit_test(the_third_is_read_from_one_level),
+        cmocka_unit_test(the_bilinear_filter_mixes_levels),
         cmocka_unit_test(outliers_lose),
         cmocka_unit_test(many_photographs_leave_the_best),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
