@@ -56,21 +56,23 @@ static void make_wall(struct orl_points *points)
     points->count = kept;
 }
 
-// Mean absolute error of the picture in the middle of the opening, with the squares in the plane z.
-static double error_with(float depths, double z)
+// Photographs from four places, side by side.
+static const double around[4] = {-0.7, -0.4, 0.3, 0.6};
+
+// Mean absolute error of the picture in the middle columns of some rows, with the squares in the plane z.
+static double error_in_rows(const double eyes[4], float depths, double z, int first, int end)
 {
     struct fixture f;
     setup_empty(&f, WALL_Z);
     make_wall(&f.scene.points);
-    static const double eyes[] = {-0.7, -0.4, 0.3, 0.6};
-    for (size_t i = 0; i < ORL_COUNT(eyes); i++)
+    for (size_t i = 0; i < 4; i++)
         add_true_photo(&f, eyes[i], z);
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_depths = depths;
     params.guess_blur = 0;
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
     double sum = 0;
-    for (int y = SIDE / 2 - INNER; y < SIDE / 2 + INNER; y++)
+    for (int y = first; y < end; y++)
         for (int x = SIDE / 2 - INNER; x < SIDE / 2 + INNER; x++) {
             uint8_t truth[3];
             shade(0, z, y * SIDE + x, SIDE, truth);
@@ -79,13 +81,44 @@ static double error_with(float depths, double z)
         }
     orl_frame_finish(&frame);
     teardown(&f);
-    return sum / (4 * INNER * INNER);
+    return sum / ((end - first) * 2 * INNER);
+}
+
+// The same in the middle of the opening.
+static double error_with(const double eyes[4], float depths, double z)
+{
+    return error_in_rows(eyes, depths, z, SIDE / 2 - INNER, SIDE / 2 + INNER);
 }
 
 static void photographs_tell_the_depth_behind_an_opening(void **state)
 {
     (void)state;
-    double rim = error_with(0, BEHIND_Z), tried = error_with(16, BEHIND_Z);
+    double rim = error_with(around, 0, BEHIND_Z), tried = error_with(around, 16, BEHIND_Z);
+    print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
+    assert_true(rim > 0.1);
+    assert_true(tried < 0.8 * rim);
+}
+
+// From far aside the wall hides the squares in the middle. What these photographs show instead is no
+// reason to doubt the depth at which the others agree.
+static void photographs_that_see_the_wall_have_no_say(void **state)
+{
+    (void)state;
+    static const double eyes[4] = {-2.6, -0.4, 0.4, 2.6};
+    double rim = error_with(eyes, 0, BEHIND_Z), tried = error_with(eyes, 16, BEHIND_Z);
+    print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
+    assert_true(rim > 0.1);
+    assert_true(tried < 0.8 * rim);
+}
+
+// The lowest cells of the opening have no neighbours below. Those beside and above them tell that the
+// depth is worth leaving the rim's.
+static void cells_at_the_rim_learn_from_all_sides(void **state)
+{
+    (void)state;
+    const int end = SIDE / 2 + (int)(opening * FOCAL / WALL_Z) - 1, first = end - 4;
+    double rim = error_in_rows(around, 0, BEHIND_Z, first, end);
+    double tried = error_in_rows(around, 16, BEHIND_Z, first, end);
     print_message("mean error: depth of the rim %.3f, depths tried %.3f\n", rim, tried);
     assert_true(rim > 0.1);
     assert_true(tried < 0.8 * rim);
@@ -96,7 +129,7 @@ static void photographs_tell_the_depth_behind_an_opening(void **state)
 static void nothing_comes_before_the_background(void **state)
 {
     (void)state;
-    double rim = error_with(0, BEFORE_Z), tried = error_with(16, BEFORE_Z);
+    double rim = error_with(around, 0, BEFORE_Z), tried = error_with(around, 16, BEFORE_Z);
     print_message("mean error: depth of the rim %.4f, depths tried %.4f\n", rim, tried);
     assert_true(rim > 0.05);
     assert_float_equal(tried, rim, 0.1 * rim);
@@ -232,6 +265,8 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
+        cmocka_unit_test(photographs_that_see_the_wall_have_no_say),
+        cmocka_unit_test(cells_at_the_rim_learn_from_all_sides),
         cmocka_unit_test(nothing_comes_before_the_background),
         cmocka_unit_test(guesses_change_without_a_line),
         cmocka_unit_test(guesses_continue_slanting_surfaces),
