@@ -34,6 +34,6 @@ void main()
 #else
         edges[place].yzw = floatBitsToUint(average(edges[place]));
 #endif
-        place += EDGE_GROUP * EDGE_GROUPS_MAX;
+        place += EDGE_GROUP * gl_NumWorkGroups.x;
     }
 }

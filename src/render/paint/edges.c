@@ -3,7 +3,10 @@
 #include "render/paint/paint.h"
 #include "shared/render_blocks.h"
 
-enum { LIST = 2 }; // storage binding of shaders/edges/edge_list.glsl
+enum {
+    LIST = 2,     // storage binding of shaders/edges/edge_list.glsl
+    GROUPS = 256, // that work on the list: the host does not know how long it is
+};
 
 void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)
 {
@@ -29,16 +32,16 @@ enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int w
 // turned into a dispatch over the list.
 static void list(const struct frame *frame, struct orl_prog *find, struct orl_dispatch *d)
 {
-    static const uint32_t nothing[4] = {0, 1, 1, 0};
-    orl_buf_write(frame->paint->edges.list, 0, sizeof nothing, nothing);
+    orl_buf_write(frame->paint->edges.list, 0, sizeof(uint32_t), &(uint32_t){0});
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d->groups);
     d->prog = find;
     d->bufs[LIST].buf = frame->paint->edges.list;
-    d->barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
-                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT;
+    d->barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                 GL_TEXTURE_UPDATE_BARRIER_BIT;
     orl_gpu_dispatch(frame->gpu, d);
-    d->indirect = frame->paint->edges.list;
+    d->groups[0] = GROUPS;
+    d->groups[1] = 1;
 }
 
 void orl_edges_antialias(const struct frame *frame)
