@@ -116,19 +116,19 @@ class Build:
         """None: it is skipped. Ends the program at its first failure."""
         environment = dict(os.environ, **({"ORIEL_TEST_SHADERS": shaders} if shaders else {}))
         limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT_S, CPU_LIMIT_S))
-        compiles = True
+        error = None
         with subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", env=environment, preexec_fn=limit,
                               cwd=os.path.join(self.folder, "tests")) as process:
             timer = threading.Timer(WAIT_S, process.kill)
             timer.start()
             for line in process.stdout:
-                compiles = compiles and not (shaders and "does not compile" in line)
-                if "[  FAILED  ]" in line or not compiles:
+                error = error or (line.strip() if shaders and "does not compile" in line else None)
+                if "[  FAILED  ]" in line or error:
                     process.kill()
             timer.cancel()
-        if not compiles:
-            raise Broken("does not compile: " + line.strip())
+        if error:
+            raise Broken(error)
         return None if process.returncode == 77 else process.returncode == 0
 
     def own_program(self, test):
