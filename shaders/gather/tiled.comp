@@ -80,7 +80,7 @@ void main()
             consider(i, source, spots[k], rankings[k]);
         c++;
         i = c < asked ? chosen[list + c] : -1;
-        // Until each pixel has its photographs and the penalty of the first one left out.
+        // The loop ends when each pixel has its photographs and the penalty of the first one left out.
         float left_out = 0.0;
         for (int k = 0; k < 4; k++)
             left_out = max(left_out, spots[k].p.z > 0.0 ? rankings[k].next : 0.0);

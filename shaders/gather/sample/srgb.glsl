@@ -34,8 +34,8 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
     return vec4(photo_aligned(source, pixel, color), 1.0);
 }
 
-// Of a pixel's best photographs: as many, which nearly make up the picture, are read with the filter that
-// is asked for, the others with one fetch.
+// How many of a pixel's photographs are read with the filter that is asked for. They have most of the weight.
+// The others are read with one fetch.
 const int SHARP = 2;
 
 // The sample of the k-th best photograph, from 0.
