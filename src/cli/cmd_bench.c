@@ -28,27 +28,23 @@ COMMAND_OPTIONS(bench_options, BENCH_OPTIONS)
 // The options as parameters of the library.
 struct plan {
     struct orl_choices choices;
-    int sizes[SIZES_MAX][2];
+    struct orl_size sizes[SIZES_MAX];
     size_t size_count;
-    size_t points[POINTS_MAX + 1];
+    size_t points[POINTS_MAX];
 };
 
 static enum orl_result plan_sizes(const struct orl_log *log, const struct bench_options *o,
                                   struct plan *plan)
 {
-    static const char *const usual[] = {"512x512", "1024x1024"};
-    size_t count = o->sizes.count ? o->sizes.count : ORL_COUNT(usual);
-    if (count > SIZES_MAX)
+    static const struct orl_size usual[] = {{512, 512}, {1024, 1024}};
+    enum orl_result result = ORL_OK;
+    if (o->sizes.count > SIZES_MAX)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--size: at most %d", SIZES_MAX);
-    for (size_t i = 0; i < count; i++) {
-        const char *text = o->sizes.count ? o->sizes.items[i] : usual[i];
-        int *size = plan->sizes[plan->size_count++], used = 0;
-        if (sscanf(text, "%5dx%5d%n", &size[0], &size[1], &used) != 2 || text[used] ||
-            size[0] < 16 || size[1] < 16 || size[0] > 16384 || size[1] > 16384)
-            return orl_fail(log, ORL_ERR_ARGUMENT,
-                            "--size %s: must be WxH, each from 16 to 16384", text);
-    }
-    return ORL_OK;
+    memcpy(plan->sizes, usual, sizeof usual);
+    plan->size_count = o->sizes.count ? o->sizes.count : ORL_COUNT(usual);
+    for (size_t i = 0; result == ORL_OK && i < o->sizes.count; i++)
+        result = orl_size_parse(log, "size", o->sizes.items[i], &plan->sizes[i]);
+    return result;
 }
 
 static enum orl_result plan_points(const struct orl_log *log, const struct bench_options *o,
@@ -96,10 +92,12 @@ static void print_memory(const struct orl_bench *bench)
            mib(bench->host_peak_bytes));
 }
 
-static void print_run(const struct orl_bench_run *run, const char *what)
+static void print_run(const struct orl_bench_run *run)
 {
-    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, what, run->timing.median_ms,
-           run->timing.slowest_ms,
+    char varied[32];
+    orl_bench_run_print(run, varied);
+    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, varied,
+           run->timing.median_ms, run->timing.slowest_ms,
            run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, run->timing.frames,
            mib(run->device_bytes));
     for (size_t i = 0; i < run->timing.pass_count; i++)
@@ -109,39 +107,31 @@ static void print_run(const struct orl_bench_run *run, const char *what)
     printf("\n");
 }
 
-static void print_runs(const struct orl_bench *bench, enum orl_bench_kind kind)
+static void print_runs(const struct orl_bench *bench)
 {
-    static const char *const titles[] = {"picture", "photographs", "points",
-                                         "photographs' size"};
-    bool any = false;
     for (size_t i = 0; i < bench->run_count; i++) {
         const struct orl_bench_run *run = &bench->runs[i];
-        char what[64];
-        if (run->kind != kind)
-            continue;
-        if (!any)
-            printf("\n%-12s %-22s %9s %9s %8s %7s %9s  %s\n", "method", titles[kind], "frame ms",
-                   "slowest", "fps", "frames", "MiB", "ms by pass");
-        any = true;
-        if (kind == ORL_BENCH_SIZES)
-            snprintf(what, sizeof what, "%dx%d", run->width, run->height);
-        else if (kind == ORL_BENCH_RESOLUTION)
-            snprintf(what, sizeof what, "1/%d", run->photo_divide);
-        else
-            snprintf(what, sizeof what, "%zu",
-                     kind == ORL_BENCH_POINTS ? run->points : run->photographs);
-        print_run(run, what);
+        if (i == 0 || run->kind != run[-1].kind)
+            printf("\n%-12s %-22s %9s %9s %8s %7s %9s  %s\n", "method",
+                   orl_bench_kind_names[run->kind], "frame ms", "slowest", "fps", "frames", "MiB",
+                   "ms by pass");
+        print_run(run);
     }
 }
 
 static void print_rasters(const struct orl_bench *bench)
 {
-    if (bench->raster_count)
-        printf("\n%-12s %12s %12s %8s\n", "points", "splat ms", "GL_POINTS ms", "ratio");
-    for (size_t i = 0; i < bench->raster_count; i++) {
-        const struct orl_bench_raster *r = &bench->rasters[i];
-        printf("%-12zu %12.2f %12.2f %8.1f\n", r->points, r->splat_ms, r->raster_ms,
-               r->splat_ms > 0 ? r->raster_ms / r->splat_ms : 0.0);
+    bool any = false;
+    for (size_t i = 0; i < bench->run_count; i++) {
+        const struct orl_bench_run *r = &bench->runs[i];
+        double splat_ms = orl_bench_splat_ms(r);
+        if (!r->gl_points_frames)
+            continue;
+        if (!any)
+            printf("\n%-12s %12s %12s %8s\n", "points", "splat ms", "GL_POINTS ms", "ratio");
+        any = true;
+        printf("%-12zu %12.2f %12.2f %8.1f\n", r->points, splat_ms, r->gl_points_ms,
+               splat_ms > 0 ? r->gl_points_ms / splat_ms : 0.0);
     }
 }
 
@@ -154,8 +144,7 @@ static void print_tables(const struct orl_bench *bench)
     if (bench->scene->frame_count)
         printf("time steps   %zu, another one in each frame\n", bench->scene->frame_count);
     print_memory(bench);
-    for (int kind = 0; kind < ORL_BENCH_KIND_COUNT; kind++)
-        print_runs(bench, (enum orl_bench_kind)kind);
+    print_runs(bench);
     print_rasters(bench);
 }
 
@@ -187,8 +176,9 @@ static enum orl_result run_bench(struct call *call)
     ORL_THEN(result, command_device(call));
     const struct orl_bench_params params = {
         .choices = plan.choices.items, .choice_count = plan.choices.count,
-        .sizes = (const int (*)[2])plan.sizes, .size_count = plan.size_count,
-        .point_counts = o->points.count ? plan.points : NULL, .seconds = o->seconds,
+        .sizes = plan.sizes, .size_count = plan.size_count,
+        .points = o->points.count ? plan.points : NULL, .points_count = o->points.count,
+        .seconds = o->seconds,
         .frames_max = (size_t)o->frames, .growth = !o->quick,
         .max_vram_bytes = o->max_vram_bytes,
         .textures = o->textures,

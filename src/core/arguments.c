@@ -66,15 +66,15 @@ static enum orl_result set_number(const struct orl_log *log, const struct orl_op
     return ORL_OK;
 }
 
-static enum orl_result set_size(const struct orl_log *log, const struct orl_option *row,
-                                const char *text, struct orl_size *field)
+enum orl_result orl_size_parse(const struct orl_log *log, const char *option, const char *text,
+                               struct orl_size *field)
 {
     struct orl_size size;
     char rest;
     if (sscanf(text, "%dx%d%c", &size.width, &size.height, &rest) != 2 || size.width < 1 ||
         size.height < 1 || size.width > 16384 || size.height > 16384)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--%s %s: must be WxH, each from 1 to 16384",
-                        row->name, text);
+                        option, text);
     *field = size;
     return ORL_OK;
 }
@@ -150,7 +150,7 @@ static enum orl_result set_value(const struct orl_log *log, const struct orl_opt
         *(const char **)field = text;
         return ORL_OK;
     case ORL_VALUE_SIZE:
-        return set_size(log, row, text, field);
+        return orl_size_parse(log, row->name, text, field);
     case ORL_VALUE_LIST:
         return add_to_list(log, row, text, field);
     case ORL_VALUE_CHOICE:

@@ -24,6 +24,9 @@ enum orl_result orl_arguments_parse(const struct orl_log *log, const char *comma
 enum orl_result orl_arguments_check(const struct orl_log *log, const char *command,
                                   const struct orl_option *rows,
                                   const void *values) ORL_CHECK_RESULT;
+// Takes the text, WxH, given for this option. ORL_ERR_ARGUMENT, logged: it is no size.
+enum orl_result orl_size_parse(const struct orl_log *log, const char *option, const char *text,
+                               struct orl_size *size) ORL_CHECK_RESULT;
 // Releases the lists among the values.
 void orl_arguments_finish(const struct orl_option *rows, void *values);
 

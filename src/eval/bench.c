@@ -1,7 +1,6 @@
-// Measures the benchmark's configurations one after another.
+// Lists the benchmark's configurations, and measures them one after another.
 #include "eval/bench.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,135 +10,27 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "eval/bench_internal.h"
-#include "eval/metrics.h"
+#include "eval/heldout.h"
 #include "io/picture.h"
 #include "scene/info.h"
 
-// --- one configuration ---
+enum { DOUBLINGS = 8 * sizeof(size_t), RESOLUTIONS = 4 };
 
-static enum orl_result add_run(struct bench_job *job, const struct orl_bench_run *run)
+const char *const orl_bench_kind_names[ORL_BENCH_KIND_COUNT] = {
+    [ORL_BENCH_SIZES] = "picture", [ORL_BENCH_PHOTOGRAPHS] = "photographs",
+    [ORL_BENCH_POINTS] = "points", [ORL_BENCH_RESOLUTION] = "photographs' size"};
+
+void orl_bench_run_print(const struct orl_bench_run *run, char text[32])
 {
-    struct orl_bench *bench = job->bench;
-    enum orl_result result = orl_grow(job->log, (void **)&bench->runs, &bench->run_capacity,
-                                      bench->run_count + 1, sizeof *bench->runs);
-    if (result == ORL_OK)
-        bench->runs[bench->run_count++] = *run;
-    return result;
+    if (run->kind == ORL_BENCH_SIZES)
+        snprintf(text, 32, "%dx%d", run->size.width, run->size.height);
+    else if (run->kind == ORL_BENCH_RESOLUTION)
+        snprintf(text, 32, "1/%d", run->photo_divide);
+    else
+        snprintf(text, 32, "%zu", run->kind == ORL_BENCH_POINTS ? run->points : run->photographs);
 }
 
-static void step(struct bench_job *job, const char *what)
-{
-    orl_progress_report(job->params->progress, "bench", job->done++, job->total, what);
-}
-
-static struct orl_bench_run new_run(const struct bench_job *job, enum orl_bench_kind kind,
-                                    size_t method, const int size[2])
-{
-    return (struct orl_bench_run){.kind = kind, .method = job->params->choices[method].method->name,
-                                  .width = size[0], .height = size[1],
-                                  .photographs = job->bench->photographs,
-                                  .points = job->scene->points.count, .photo_divide = 1};
-}
-
-static struct orl_renderer_params new_params(const struct bench_job *job)
-{
-    return (struct orl_renderer_params){.max_vram_bytes = job->params->max_vram_bytes,
-                                        .textures = job->params->textures};
-}
-
-// Measures all methods with one renderer.
-static enum orl_result measure_methods(struct bench_job *job, struct orl_renderer *renderer,
-                                       const struct orl_bench_run *like, const char *what)
-{
-    enum orl_result result = ORL_OK;
-    for (size_t m = 0; result == ORL_OK && m < job->params->choice_count; m++) {
-        struct orl_bench_run run = *like;
-        run.method = job->params->choices[m].method->name;
-        run.psnr_db = m == 0 ? like->psnr_db : 0;
-        step(job, what);
-        result = orl_bench_measure(job, renderer, &job->params->choices[m].params, &run);
-        ORL_THEN(result, add_run(job, &run));
-    }
-    return result;
-}
-
-// The same with a renderer of these parameters.
-static enum orl_result measure_with(struct bench_job *job, const struct orl_renderer_params *params,
-                                    const struct orl_bench_run *like, const char *what)
-{
-    struct orl_renderer *renderer = NULL;
-    enum orl_result result = orl_renderer_create(job->gpu, job->scene, params, &renderer);
-    ORL_THEN(result, measure_methods(job, renderer, like, what));
-    orl_renderer_destroy(&renderer);
-    return result;
-}
-
-static enum orl_result measure_sizes(struct bench_job *job)
-{
-    struct orl_renderer *renderer = NULL;
-    const struct orl_renderer_params params = new_params(job);
-    enum orl_result result = orl_renderer_create(job->gpu, job->scene, &params, &renderer);
-    for (size_t i = 0; result == ORL_OK && i < job->params->size_count; i++) {
-        char what[48];
-        snprintf(what, sizeof what, "%dx%d", job->params->sizes[i][0], job->params->sizes[i][1]);
-        struct orl_bench_run like = new_run(job, ORL_BENCH_SIZES, 0, job->params->sizes[i]);
-        result = measure_methods(job, renderer, &like, what);
-        if (result == ORL_OK && i == 0)
-            job->bench->memory_count =
-                orl_gpu_memory(job->gpu, job->bench->memory, ORL_BENCH_MEMORY_MAX);
-    }
-    if (job->bench->memory_count > ORL_BENCH_MEMORY_MAX)
-        job->bench->memory_count = ORL_BENCH_MEMORY_MAX;
-    if (result == ORL_OK && job->params->trace)
-        result = orl_bench_trace(job, renderer, &job->params->choices[0].params);
-    orl_renderer_destroy(&renderer);
-    return result;
-}
-
-// --- growth ---
-
-static enum orl_result measure_photographs(struct bench_job *job)
-{
-    size_t all = job->bench->photographs;
-    bool *use = orl_array(job->log, job->scene->photo_count, sizeof *use);
-    enum orl_result result = use ? ORL_OK : ORL_ERR_MEMORY;
-    size_t least = all > 1 && orl_scene_silhouettes(job->scene) ? 2 : 1; // a hull needs two
-    for (size_t count = least; result == ORL_OK; count = 2 * count < all ? 2 * count : all) {
-        char what[48];
-        snprintf(what, sizeof what, "%zu photographs", count);
-        orl_bench_choose_photos(job->scene, count, use);
-        struct orl_renderer_params params = new_params(job);
-        params.use = use;
-        struct orl_bench_run like =
-            new_run(job, ORL_BENCH_PHOTOGRAPHS, 0, job->params->sizes[0]);
-        like.photographs = count;
-        result = measure_with(job, &params, &like, what);
-        if (count == all)
-            break;
-    }
-    free(use);
-    return result;
-}
-
-static enum orl_result add_raster(struct bench_job *job, const struct orl_points *points,
-                                  double splat_ms)
-{
-    struct orl_bench *bench = job->bench;
-    struct orl_bench_raster raster = {.points = points->count, .splat_ms = splat_ms,
-                                      .width = job->params->sizes[0][0],
-                                      .height = job->params->sizes[0][1]};
-    step(job, "GL_POINTS");
-    enum orl_result result = orl_bench_measure_raster(job, points, &raster);
-    if (result == ORL_OK)
-        result = orl_grow(job->log, (void **)&bench->rasters, &bench->raster_capacity,
-                          bench->raster_count + 1, sizeof *bench->rasters);
-    if (result == ORL_OK)
-        bench->rasters[bench->raster_count++] = raster;
-    return result;
-}
-
-// Time of all splatting passes of a frame.
-static double splat_ms(const struct orl_bench_run *run)
+double orl_bench_splat_ms(const struct orl_bench_run *run)
 {
     double sum = 0;
     for (size_t i = 0; i < run->timing.pass_count; i++)
@@ -148,75 +39,86 @@ static double splat_ms(const struct orl_bench_run *run)
     return sum;
 }
 
-static enum orl_result measure_point_count(struct bench_job *job, size_t count)
+// --- the list ---
+
+// Adds the configuration once for each method.
+static void add_runs(struct bench_job *job, struct orl_bench_run run)
 {
-    struct orl_scene scene = *job->scene, *whole = job->scene;
-    scene.lod = NULL; // its points take the place of all points
-    const struct orl_renderer_params params = new_params(job);
-    char what[48];
-    snprintf(what, sizeof what, "%zu points", count);
-    enum orl_result result =
-        orl_bench_resample(job->log, &job->scene->points, count, &scene.points);
-    if (result != ORL_OK)
-        return result;
-    struct orl_bench_run like = new_run(job, ORL_BENCH_POINTS, 0, job->params->sizes[0]);
-    like.points = count;
-    job->scene = &scene;
-    result = measure_with(job, &params, &like, what);
-    job->scene = whole;
-    if (result == ORL_OK) {
-        // Uses the first method's time: all methods have the same splatting passes.
-        const struct orl_bench *bench = job->bench;
-        result = add_raster(job, &scene.points,
-                            splat_ms(&bench->runs[bench->run_count - job->params->choice_count]));
+    for (size_t m = 0; m < job->params->choice_count; m++) {
+        run.method = job->params->choices[m].method->name;
+        job->bench->runs[job->bench->run_count++] = run;
     }
-    orl_points_finish(&scene.points);
-    return result;
 }
 
-static enum orl_result measure_points(struct bench_job *job)
+static void list_growth(struct bench_job *job, struct orl_bench_run run, const size_t *points,
+                        size_t points_count)
 {
-    size_t all = job->scene->points.count;
-    size_t usual[] = {all / 8, all / 4, all / 2, all, 1000000, 0}, previous = 0;
-    qsort(usual, ORL_COUNT(usual) - 1, sizeof *usual, orl_order_sizes);
-    const size_t *counts = job->params->point_counts ? job->params->point_counts : usual;
-    enum orl_result result = ORL_OK;
-    if (counts == usual) // the first counts of a tiny scene may be 0
-        while (*counts == 0)
-            counts++;
-    for (; result == ORL_OK && *counts; counts++) {
-        if (*counts != previous)
-            result = measure_point_count(job, *counts);
-        previous = *counts;
+    size_t photographs = run.photographs, all = run.points;
+    bool hull = photographs > 1 && orl_scene_silhouettes(job->bench->scene); // needs two
+    run.kind = ORL_BENCH_PHOTOGRAPHS;
+    for (run.photographs = hull ? 2 : 1; run.photographs < photographs; run.photographs *= 2)
+        add_runs(job, run);
+    run.photographs = photographs;
+    add_runs(job, run);
+    run.kind = ORL_BENCH_POINTS;
+    for (size_t i = 0; all && i < points_count; i++) {
+        run.points = points[i];
+        if (points[i] && (i == 0 || points[i] != points[i - 1]))
+            add_runs(job, run);
     }
-    return result;
+    run.points = all;
+    run.kind = ORL_BENCH_RESOLUTION;
+    for (int i = 0; i < RESOLUTIONS; i++, run.photo_divide *= 2)
+        add_runs(job, run);
 }
 
-// --- resolution of the photographs ---
+static enum orl_result list_runs(struct bench_job *job)
+{
+    const struct orl_bench_params *params = job->params;
+    struct orl_bench_run run = {.photographs = job->bench->photographs,
+                                .points = job->bench->scene->points.count, .photo_divide = 1};
+    size_t usual[] = {run.points / 8, run.points / 4, run.points / 2, run.points, 1000000};
+    qsort(usual, ORL_COUNT(usual), sizeof *usual, orl_order_sizes);
+    const size_t *points = params->points ? params->points : usual;
+    size_t points_count = params->points ? params->points_count : ORL_COUNT(usual);
+    size_t most = params->size_count + DOUBLINGS + points_count + RESOLUTIONS;
+    job->bench->runs = orl_array(job->log, params->choice_count * most, sizeof *job->bench->runs);
+    ORL_TRY_MEMORY(job->bench->runs);
+    for (size_t i = 0; i < params->size_count; i++) {
+        run.size = params->sizes[i];
+        add_runs(job, run);
+    }
+    run.size = params->sizes[0];
+    if (params->growth)
+        list_growth(job, run, points, points_count);
+    return ORL_OK;
+}
 
-// Renders the first view and writes its picture to image_dir. *psnr_db: its PSNR against `best`,
-// which the first call sets.
+// --- one configuration ---
+
+// Renders the first view, writes its picture to image_dir and compares it with that of full-size
+// photographs, which comes first.
 static enum orl_result compare_resolution(struct bench_job *job, struct orl_renderer *renderer,
-                                          int divide, struct orl_image *best, double *psnr_db)
+                                          struct orl_bench_run *run)
 {
     struct orl_frame frame = {0};
     struct orl_image picture = {0};
     struct orl_metrics metrics = {0};
-    struct orl_view view = orl_bench_resize_view(&job->views[0], job->params->sizes[0][0],
-                                                 job->params->sizes[0][1]);
+    struct orl_view view = orl_bench_view(job, 0, run->size);
     char *path = NULL;
     enum orl_result result =
         orl_renderer_draw(renderer, &view, &job->params->choices[0].params, NULL, &frame);
     ORL_THEN(result, orl_tone_srgb(job->log, &frame.color, &picture));
-    if (result == ORL_OK && best->u8)
-        result = orl_metrics_compare(job->log, &picture, best, &frame.coverage, &metrics);
-    *psnr_db = metrics.psnr_db;
+    if (result == ORL_OK && job->best.u8)
+        result = orl_metrics_compare(job->log, &picture, &job->best, &frame.coverage, &metrics);
+    run->psnr_db = metrics.psnr_db;
     if (result == ORL_OK && job->params->image_dir) {
-        path = orl_format(job->log, "%s/photographs_1of%d.png", job->params->image_dir, divide);
+        path = orl_format(job->log, "%s/photographs_1of%d.png", job->params->image_dir,
+                          run->photo_divide);
         result = path ? orl_png_write(job->log, path, &picture) : ORL_ERR_MEMORY;
     }
-    if (result == ORL_OK && !best->u8) {
-        *best = picture;
+    if (result == ORL_OK && !job->best.u8) {
+        job->best = picture;
         memset(&picture, 0, sizeof picture);
     }
     free(path);
@@ -225,24 +127,60 @@ static enum orl_result compare_resolution(struct bench_job *job, struct orl_rend
     return result;
 }
 
-static enum orl_result measure_resolutions(struct bench_job *job)
+// Measures the `index`-th run. What the first one leaves on the device is its memory.
+static enum orl_result measure_run(struct bench_job *job, struct orl_renderer *renderer,
+                                   size_t index)
 {
-    struct orl_image best = {0};
-    enum orl_result result = ORL_OK;
-    for (int divide = 1; result == ORL_OK && divide <= 8; divide *= 2) {
-        struct orl_renderer *renderer = NULL;
-        struct orl_renderer_params params = new_params(job);
-        params.photo_divide = divide;
-        struct orl_bench_run like = new_run(job, ORL_BENCH_RESOLUTION, 0, job->params->sizes[0]);
-        char what[48];
-        snprintf(what, sizeof what, "photographs at 1/%d", divide);
-        like.photo_divide = divide;
-        result = orl_renderer_create(job->gpu, job->scene, &params, &renderer);
-        ORL_THEN(result, compare_resolution(job, renderer, divide, &best, &like.psnr_db));
-        ORL_THEN(result, measure_methods(job, renderer, &like, what));
-        orl_renderer_destroy(&renderer);
+    struct orl_bench *bench = job->bench;
+    const struct orl_choice *choices = job->params->choices;
+    struct orl_bench_run *run = &bench->runs[index];
+    char varied[32], what[64];
+    orl_bench_run_print(run, varied);
+    snprintf(what, sizeof what, "%s %s", orl_bench_kind_names[run->kind], varied);
+    orl_progress_report(job->params->progress, "bench", (double)index, (double)bench->run_count,
+                        what);
+    enum orl_result result = orl_bench_measure(
+        job, renderer, &choices[index % job->params->choice_count].params, run);
+    if (index > 0 || result != ORL_OK)
+        return result;
+    bench->memory_count = orl_gpu_memory(job->gpu, bench->memory, ORL_BENCH_MEMORY_MAX);
+    if (bench->memory_count > ORL_BENCH_MEMORY_MAX)
+        bench->memory_count = ORL_BENCH_MEMORY_MAX;
+    return ORL_OK;
+}
+
+// Measures runs [first, end), which differ in picture and method alone, with one renderer.
+static enum orl_result measure_runs(struct bench_job *job, size_t first, size_t end)
+{
+    struct orl_bench_run *run = &job->bench->runs[first];
+    struct orl_scene scene = *job->bench->scene;
+    struct orl_points points = {0};
+    struct orl_renderer *renderer = NULL;
+    bool *use = orl_array(job->log, scene.photo_count, sizeof *use);
+    struct orl_renderer_params params = {.use = use, .max_vram_bytes = job->params->max_vram_bytes,
+                                         .textures = job->params->textures,
+                                         .photo_divide = run->photo_divide};
+    enum orl_result result = use ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < scene.photo_count; i++)
+        use[i] = orl_heldout_chosen(&scene, false, run->photographs, i);
+    if (result == ORL_OK && run->kind == ORL_BENCH_POINTS) {
+        result = orl_bench_resample(job->log, &job->bench->scene->points, run->points, &points);
+        scene.points = points;
+        scene.lod = NULL; // the points take the place of all its points
     }
-    orl_image_finish(&best);
+    job->scene = &scene;
+    ORL_THEN(result, orl_renderer_create(job->gpu, &scene, &params, &renderer));
+    if (result == ORL_OK && run->kind == ORL_BENCH_RESOLUTION)
+        result = compare_resolution(job, renderer, run);
+    for (size_t i = first; result == ORL_OK && i < end; i++)
+        result = measure_run(job, renderer, i);
+    if (result == ORL_OK && first == 0 && job->params->trace)
+        result = orl_bench_trace(job, renderer, &job->params->choices[0].params, run);
+    orl_renderer_destroy(&renderer);
+    if (result == ORL_OK && run->kind == ORL_BENCH_POINTS)
+        result = orl_bench_measure_raster(job, run);
+    orl_points_finish(&points);
+    free(use);
     return result;
 }
 
@@ -255,8 +193,8 @@ static void describe(struct bench_job *job)
     snprintf(bench->device, sizeof bench->device, "%s", caps->renderer);
     snprintf(bench->driver, sizeof bench->driver, "%s", caps->version);
     bench->software = caps->software;
-    for (size_t i = 0; i < job->scene->photo_count; i++) {
-        const struct orl_photo *photo = &job->scene->photos[i];
+    for (size_t i = 0; i < bench->scene->photo_count; i++) {
+        const struct orl_photo *photo = &bench->scene->photos[i];
         if (photo->test)
             continue;
         bench->photographs++;
@@ -267,24 +205,10 @@ static void describe(struct bench_job *job)
     }
 }
 
-static double count_steps(const struct bench_job *job)
-{
-    double methods = (double)job->params->choice_count;
-    double steps = methods * (double)job->params->size_count;
-    if (!job->params->growth)
-        return steps;
-    size_t points = job->params->point_counts ? 0 : 5;
-    while (job->params->point_counts && job->params->point_counts[points])
-        points++;
-    double photographs = ceil(log2((double)job->bench->photographs)) + 1;
-    return steps + methods * (photographs + 4) + (methods + 1) * (double)points;
-}
-
-enum orl_result orl_bench_run(struct orl_gpu *gpu, struct orl_scene *scene,
+enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_bench_params *params, struct orl_bench *bench)
 {
-    struct bench_job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .scene = scene,
-                            .params = params, .bench = bench};
+    struct bench_job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = params, .bench = bench};
     ORL_REQUIRE(job.log, params->size_count > 0 && params->choice_count > 0);
     ORL_REQUIRE(job.log, params->frames_max >= ORL_TIMING_FRAMES_MIN);
     memset(bench, 0, sizeof *bench);
@@ -293,24 +217,23 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, struct orl_scene *scene,
     if (!bench->photographs)
         return orl_fail(job.log, ORL_ERR_DATA, "%s: all photographs are held out", scene->dir);
     orl_bench_choose_views(&job);
-    job.total = count_steps(&job);
-    enum orl_result result = ORL_OK;
-    if (params->image_dir)
+    enum orl_result result = list_runs(&job);
+    if (result == ORL_OK && params->image_dir)
         result = orl_dir_make(job.log, params->image_dir);
-    ORL_THEN(result, measure_sizes(&job));
-    if (result == ORL_OK && params->growth)
-        result = measure_photographs(&job);
-    if (result == ORL_OK && params->growth && scene->points.count)
-        result = measure_points(&job);
-    if (result == ORL_OK && params->growth)
-        result = measure_resolutions(&job);
+    // The sizes come first, and share a renderer.
+    for (size_t first = 0, end; result == ORL_OK && first < bench->run_count; first = end) {
+        end = first + params->choice_count * (first == 0 ? params->size_count : 1);
+        result = measure_runs(&job, first, end);
+    }
+    orl_image_finish(&job.best);
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     bench->host_peak_bytes = (size_t)usage.ru_maxrss << 10;
     if (result != ORL_OK)
         orl_bench_finish(bench);
     else
-        orl_progress_report(params->progress, "bench", job.total, job.total, NULL);
+        orl_progress_report(params->progress, "bench", (double)bench->run_count,
+                            (double)bench->run_count, NULL);
     return result;
 }
 
@@ -319,6 +242,5 @@ void orl_bench_finish(struct orl_bench *bench)
     if (!bench)
         return;
     free(bench->runs);
-    free(bench->rasters);
     memset(bench, 0, sizeof *bench);
 }

@@ -3,6 +3,7 @@
 #ifndef ORL_EVAL_BENCH_H
 #define ORL_EVAL_BENCH_H
 
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 #include "eval/choice.h"
 #include "eval/timing.h"
@@ -17,12 +18,14 @@ enum orl_bench_kind {
     ORL_BENCH_RESOLUTION,  // of the photographs: figure 15
     ORL_BENCH_KIND_COUNT
 };
+// What the runs of a kind differ in.
+extern const char *const orl_bench_kind_names[ORL_BENCH_KIND_COUNT];
 
-// One configuration.
+// One row: a configuration, and what was measured of it.
 struct orl_bench_run {
     enum orl_bench_kind kind;
     const char *method;
-    int width, height;          // of the picture
+    struct orl_size size;       // of the picture
     size_t photographs, points;
     int photo_divide;           // photographs at 1/n of their size
     struct orl_timing timing;
@@ -30,22 +33,24 @@ struct orl_bench_run {
     size_t uploaded_bytes;      // photographs and masks that went to the device
     double psnr_db;             // ORL_BENCH_RESOLUTION, first method: PSNR against full size; else
                                 // 0
+    // ORL_BENCH_POINTS, first method: the same points drawn by the graphics pipeline, as GL_POINTS
+    // with depth test; no frames: of other rows.
+    size_t gl_points_frames;
+    double gl_points_ms;
 };
-
-// Compute splatting compared with the graphics pipeline's GL_POINTS with depth test.
-struct orl_bench_raster {
-    size_t points, frames;
-    int width, height;
-    double splat_ms, raster_ms;
-};
+// What the run's kind varies, such as "512x512".
+void orl_bench_run_print(const struct orl_bench_run *run, char text[32]);
+// Time of all splatting passes of a frame.
+double orl_bench_splat_ms(const struct orl_bench_run *run);
 
 struct orl_bench_params {
     const struct orl_choice *choices;
     size_t choice_count;
-    const int (*sizes)[2]; // width, height; growth is measured at the first size
+    const struct orl_size *sizes; // growth is measured at the first size
     size_t size_count;
-    const size_t *point_counts; // for growth with points, ended by 0; NULL: an eighth, a quarter,
-                                // half and all of the scene's, and a million
+    const size_t *points; // for growth with points; NULL: an eighth, a quarter, half and all of the
+                          // scene's, and a million
+    size_t points_count;
     double seconds;        // approximate duration of the frames behind each median
     size_t frames_max;     // greatest number of frames behind each median
     bool growth;           // measures growth with photographs, points and resolution, and GL_POINTS
@@ -63,17 +68,15 @@ struct orl_bench {
     size_t photographs;      // number that the renderer may use
     int photo_width, photo_height; // largest
     size_t host_peak_bytes;
-    struct orl_bench_run *runs; // owned
-    size_t run_count, run_capacity;
-    struct orl_bench_raster *rasters; // owned
-    size_t raster_count, raster_capacity;
+    struct orl_bench_run *runs; // owned, kind by kind
+    size_t run_count;
     struct orl_gpu_memory memory[ORL_BENCH_MEMORY_MAX]; // of the first run
     size_t memory_count;
 };
 
 // Renders fixed views between neighbouring photographs, without using held-out photographs, of a
 // sequence a time step a frame. Creates its own renderers, one after another.
-enum orl_result orl_bench_run(struct orl_gpu *gpu, struct orl_scene *scene,
+enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_bench_params *params,
                               struct orl_bench *bench) ORL_CHECK_RESULT;
 void orl_bench_finish(struct orl_bench *bench);

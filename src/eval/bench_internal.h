@@ -4,31 +4,28 @@
 
 #include "eval/bench.h"
 
-enum { BENCH_VIEWS_MAX = 3 };
+enum { BENCH_VIEWS = 3 };
 
 struct bench_job {
     const struct orl_log *log;
     struct orl_gpu *gpu;
-    struct orl_scene *scene;
+    struct orl_scene *scene; // the run's: with its points, and at the time step that is shown
     const struct orl_bench_params *params;
     struct orl_bench *bench;
-    struct orl_view views[BENCH_VIEWS_MAX]; // of the photographs' size; resized for each run
-    size_t view_count;
-    double done, total; // configurations, for the progress report
+    struct orl_view views[BENCH_VIEWS]; // with the photographs' cameras
+    struct orl_image best; // owned: the picture of full-size photographs
 };
 
-// --- bench_scene.c: the scene with more or fewer points and photographs ---
+// --- bench_scene.c: views, and the scene with more or fewer points ---
 
 // Chooses views between neighbouring photographs, spread over the scene.
 void orl_bench_choose_views(struct bench_job *job);
-// Crops the view to the shape of width x height, as wide as fits into the photograph's.
-struct orl_view orl_bench_resize_view(const struct orl_view *view, int width, int height);
+// The view of frame `number`, of this size.
+struct orl_view orl_bench_view(const struct bench_job *job, size_t number, struct orl_size size);
 // Makes `count` points: an even choice of `all` with larger radii, or each point split into several
 // smaller ones on its disc. The caller owns the result.
 enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_points *all,
                                    size_t count, struct orl_points *points);
-// Sets use[i] for an even choice of `count` photographs that are not held out.
-void orl_bench_choose_photos(const struct orl_scene *scene, size_t count, bool *use);
 
 // --- bench_measure.c: medians ---
 
@@ -36,11 +33,12 @@ void orl_bench_choose_photos(const struct orl_scene *scene, size_t count, bool *
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
                                   const struct orl_render_params *render,
                                   struct orl_bench_run *run);
-enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl_points *points,
-                                         struct orl_bench_raster *raster);
-// Draws some frames and writes the trace to job->params->trace.
+// The same of the scene's points as GL_POINTS.
+enum orl_result orl_bench_measure_raster(struct bench_job *job, struct orl_bench_run *run);
+// Draws some frames as those of `run` and writes the trace to job->params->trace.
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
-                                const struct orl_render_params *render);
+                                const struct orl_render_params *render,
+                                const struct orl_bench_run *run);
 
 // --- bench_trace.c ---
 

@@ -3,6 +3,7 @@
 
 #include "core/json.h"
 #include "eval/bench.h"
+#include "eval/internal.h"
 
 static json_t *passes_json(const struct orl_bench_run *run)
 {
@@ -18,7 +19,7 @@ static json_t *run_json(const struct orl_bench_run *run)
 {
     json_t *object = json_pack(
         "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:I, s:I, s:o}", "method", run->method,
-        "size", run->width, run->height, "photographs", (json_int_t)run->photographs, "points",
+        "size", run->size.width, run->size.height, "photographs", (json_int_t)run->photographs, "points",
         (json_int_t)run->points, "photo_divide", run->photo_divide, "frames",
         (json_int_t)run->timing.frames, "frame_ms", run->timing.median_ms, "slowest_ms",
         run->timing.slowest_ms, "cpu_ms", run->timing.cpu_ms, "fps",
@@ -42,12 +43,13 @@ static json_t *runs_json(const struct orl_bench *bench, enum orl_bench_kind kind
 static json_t *rasters_json(const struct orl_bench *bench)
 {
     json_t *array = json_array();
-    for (size_t i = 0; i < bench->raster_count; i++) {
-        const struct orl_bench_raster *r = &bench->rasters[i];
-        json_array_append_new(array, json_pack(
-            "{s:I, s:[i,i], s:I, s:f, s:f}", "points", (json_int_t)r->points, "size", r->width,
-            r->height, "frames", (json_int_t)r->frames, "splat_ms", r->splat_ms, "gl_points_ms",
-            r->raster_ms));
+    for (size_t i = 0; i < bench->run_count; i++) {
+        const struct orl_bench_run *r = &bench->runs[i];
+        if (r->gl_points_frames)
+            json_array_append_new(array, json_pack(
+                "{s:I, s:[i,i], s:I, s:f, s:f}", "points", (json_int_t)r->points, "size",
+                r->size.width, r->size.height, "frames", (json_int_t)r->gl_points_frames,
+                "splat_ms", orl_bench_splat_ms(r), "gl_points_ms", r->gl_points_ms));
     }
     return array;
 }
@@ -76,9 +78,5 @@ char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench
         runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
         "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
         rasters_json(bench));
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(6)) : NULL;
-    if (!text)
-        orl_logf(log, ORL_LOG_ERROR, "no memory for the JSON text");
-    json_decref(root);
-    return text;
+    return orl_reports_to_text(log, root, root != NULL, true, 6);
 }

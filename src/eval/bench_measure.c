@@ -8,42 +8,41 @@
 
 enum { WARM_UP = 2, TRACE_FRAMES = 6, TRACE_SPANS = 1024 };
 
-// The frames of one run.
+// The frames of one run, of the renderer or of the rasteriser.
 struct run_frames {
     struct bench_job *job;
     struct orl_renderer *renderer;
     const struct orl_render_params *render;
-    int width, height;
+    struct orl_point_raster *raster;
+    struct orl_size size;
 };
 
 static enum orl_result draw(void *priv, size_t number)
 {
     const struct run_frames *f = priv;
-    struct orl_view view = orl_bench_resize_view(&f->job->views[number % f->job->view_count],
-                                                 f->width, f->height);
+    struct orl_view view = orl_bench_view(f->job, number, f->size);
     enum orl_result result = orl_timing_show_time_step(f->job->gpu, f->job->scene, f->renderer, number);
     return result != ORL_OK ? result : orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
 }
 
-// Timing without warm-up and passes, as the benchmark's parameters say.
-static struct orl_timing_params timing_params(const struct bench_job *job)
+static enum orl_result time_frames(struct run_frames *frames,
+                                   enum orl_result (*draw_frame)(void *priv, size_t number),
+                                   struct orl_timing *timing)
 {
-    return (struct orl_timing_params){.views = job->view_count, .seconds = job->params->seconds,
-                                      .frames_max = job->params->frames_max,
-                                      .progress = job->params->progress};
+    const struct bench_job *job = frames->job;
+    const struct orl_timing_params params = {
+        .draw = draw_frame, .priv = frames, .views = BENCH_VIEWS, .warm_up = WARM_UP,
+        .seconds = job->params->seconds, .frames_max = job->params->frames_max,
+        .pass_frames = job->params->frames_max, .progress = job->params->progress};
+    return orl_timing_take(job->gpu, &params, timing);
 }
 
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
                                   const struct orl_render_params *render,
                                   struct orl_bench_run *run)
 {
-    struct run_frames frames = {job, renderer, render, run->width, run->height};
-    struct orl_timing_params params = timing_params(job);
-    params.draw = draw;
-    params.priv = &frames;
-    params.warm_up = WARM_UP;
-    params.pass_frames = params.frames_max;
-    enum orl_result result = orl_timing_take(job->gpu, &params, &run->timing);
+    struct run_frames frames = {job, renderer, render, NULL, run->size};
+    enum orl_result result = time_frames(&frames, draw, &run->timing);
     if (result == ORL_OK && job->scene->frame_count)
         result = orl_scene_set_frame(job->log, job->scene, -1);
     run->device_bytes = orl_gpu_bytes(job->gpu);
@@ -73,51 +72,41 @@ static void clip_matrix(const struct orl_view *view, double near, double far, fl
     }
 }
 
-enum orl_result orl_bench_measure_raster(struct bench_job *job, const struct orl_points *points,
-                                         struct orl_bench_raster *raster)
+static enum orl_result draw_raster(void *priv, size_t number)
 {
-    struct orl_point_raster *drawer = NULL;
-    const struct orl_timing_params timing = timing_params(job);
-    struct orl_pass_time times[ORL_TIMING_PASSES_MAX];
-    double start, *ms = orl_array(job->log, job->params->frames_max, sizeof *ms);
-    enum orl_result result = ms ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = orl_point_raster_create(job->gpu, (const float (*)[3])points->position,
-                                         (const uint8_t (*)[3])points->color, points->count,
-                                         raster->width, raster->height, &drawer);
-    orl_gpu_take_times(job->gpu, NULL, 0);
-    orl_gpu_time_passes(job->gpu, true);
-    start = orl_time_s();
-    for (size_t i = 0;
-         result == ORL_OK && !orl_timing_enough(&timing, raster->frames, start); i++) {
-        float matrix[16];
-        struct orl_view view = orl_bench_resize_view(&job->views[i % job->view_count],
-                                                     raster->width, raster->height);
-        clip_matrix(&view, 1e-3 * job->scene->photo_distance, 1e3 * job->scene->photo_distance,
-                    matrix);
-        orl_point_raster_draw(drawer, matrix);
-        if (orl_gpu_take_times(job->gpu, times, ORL_TIMING_PASSES_MAX) == 0)
-            result = ORL_ERR_GPU;
-        else if (i >= job->view_count) // after one round of warm-up
-            ms[raster->frames++] = times[0].ms;
-        if (orl_progress_cancelled(job->params->progress))
-            result = ORL_ERR_CANCELLED;
+    const struct run_frames *f = priv;
+    struct orl_view view = orl_bench_view(f->job, number, f->size);
+    double distance = f->job->scene->photo_distance;
+    float matrix[16];
+    clip_matrix(&view, 1e-3 * distance, 1e3 * distance, matrix);
+    orl_point_raster_draw(f->raster, matrix);
+    return orl_gpu_finish(f->job->gpu);
+}
+
+enum orl_result orl_bench_measure_raster(struct bench_job *job, struct orl_bench_run *run)
+{
+    const struct orl_points *points = &job->scene->points;
+    struct run_frames frames = {.job = job, .size = run->size};
+    struct orl_timing timing;
+    enum orl_result result = orl_point_raster_create(
+        job->gpu, (const float (*)[3])points->position, (const uint8_t (*)[3])points->color,
+        points->count, run->size.width, run->size.height, &frames.raster);
+    ORL_THEN(result, time_frames(&frames, draw_raster, &timing));
+    if (result == ORL_OK) {
+        run->gl_points_frames = timing.frames;
+        run->gl_points_ms = timing.passes[0].ms; // of the only pass
     }
-    orl_gpu_time_passes(job->gpu, false);
-    ORL_THEN(result, orl_gpu_finish(job->gpu));
-    raster->raster_ms = orl_median(ms, raster->frames);
-    orl_point_raster_destroy(&drawer);
-    free(ms);
+    orl_point_raster_destroy(&frames.raster);
     return result;
 }
 
 // --- the trace ---
 
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
-                                const struct orl_render_params *render)
+                                const struct orl_render_params *render,
+                                const struct orl_bench_run *run)
 {
-    struct run_frames run = {job, renderer, render, job->params->sizes[0][0],
-                             job->params->sizes[0][1]};
+    struct run_frames traced = {job, renderer, render, NULL, run->size};
     struct bench_frame_span frames[TRACE_FRAMES];
     struct orl_pass_trace trace = {.capacity = TRACE_SPANS};
     trace.spans = orl_array(job->log, TRACE_SPANS, sizeof *trace.spans);
@@ -129,7 +118,7 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
     for (size_t i = 0; result == ORL_OK && i < TRACE_FRAMES; i++) {
         frames[i].start_s = orl_time_s();
         result = orl_progress_cancelled(job->params->progress) ? ORL_ERR_CANCELLED
-                                                               : draw(&run, i);
+                                                               : draw(&traced, i);
         frames[i].end_s = orl_time_s();
     }
     orl_gpu_trace_passes(job->gpu, NULL);

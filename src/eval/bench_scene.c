@@ -1,9 +1,10 @@
-// Views for the benchmark, and scenes with more or fewer points and photographs.
+// Views for the benchmark, and scenes with more or fewer points.
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "eval/bench_internal.h"
+#include "oriel/path.h"
 
 static size_t next_used(const struct orl_scene *scene, size_t from)
 {
@@ -14,30 +15,24 @@ static size_t next_used(const struct orl_scene *scene, size_t from)
 
 void orl_bench_choose_views(struct bench_job *job)
 {
-    const struct orl_scene *scene = job->scene;
-    job->view_count = 0;
-    for (size_t k = 0; k < BENCH_VIEWS_MAX; k++) {
-        size_t a = next_used(scene, (2 * k + 1) * scene->photo_count / (2 * BENCH_VIEWS_MAX));
+    const struct orl_scene *scene = job->bench->scene;
+    for (size_t k = 0; k < BENCH_VIEWS; k++) {
+        size_t a = next_used(scene, (2 * k + 1) * scene->photo_count / (2 * BENCH_VIEWS));
         size_t b = a < scene->photo_count ? next_used(scene, a + 1) : a;
         if (a == scene->photo_count)
             a = next_used(scene, 0);
         if (b == scene->photo_count)
             b = next_used(scene, 0);
-        job->views[job->view_count++] =
+        job->views[k] =
             orl_view_interpolate(&scene->photos[a].view, &scene->photos[b].view, 0.5);
     }
 }
 
-struct orl_view orl_bench_resize_view(const struct orl_view *view, int width, int height)
+struct orl_view orl_bench_view(const struct bench_job *job, size_t number, struct orl_size size)
 {
-    const struct orl_camera *c = &view->camera;
-    double scale = fmax((double)width / c->width, (double)height / c->height);
-    struct orl_view resized = *view;
-    resized.camera = (struct orl_camera){
-        .width = width, .height = height, .fx = c->fx * scale, .fy = c->fy * scale,
-        .cx = 0.5 * width + (c->cx - 0.5 * c->width) * scale,
-        .cy = 0.5 * height + (c->cy - 0.5 * c->height) * scale};
-    return resized;
+    struct orl_view view = job->views[number % BENCH_VIEWS];
+    view.camera = orl_camera_reframed(&view.camera, size.width, size.height);
+    return view;
 }
 
 // Moves a copy of a point on the point's disc, which its copies fill evenly (Vogel's spiral).
@@ -81,15 +76,4 @@ enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_p
         points->radius[i] *= scale;
     }
     return ORL_OK;
-}
-
-void orl_bench_choose_photos(const struct orl_scene *scene, size_t count, bool *use)
-{
-    size_t train = 0, at = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        train += !scene->photos[i].test;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        use[i] = !scene->photos[i].test && (at + 1) * count / train > at * count / train;
-        at += !scene->photos[i].test;
-    }
 }

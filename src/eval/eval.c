@@ -61,15 +61,10 @@ static enum orl_result draw_again(void *priv, size_t number)
 static void add_pass_times(struct orl_eval *eval, const struct orl_timing *timing)
 {
     for (size_t i = 0; i < timing->pass_count; i++) {
-        const struct orl_timing_pass *pass = &timing->passes[i];
-        size_t k = 0;
-        while (k < eval->pass_count && strcmp(eval->passes[k].name, pass->name) != 0)
-            k++;
-        if (k == ORL_TIMING_PASSES_MAX)
-            continue;
-        if (k == eval->pass_count)
-            eval->passes[eval->pass_count++].name = pass->name;
-        eval->passes[k].ms += pass->ms / (double)eval->view_count;
+        struct orl_timing_pass *sum =
+            orl_timing_pass(eval->passes, &eval->pass_count, timing->passes[i].name);
+        if (sum)
+            sum->ms += timing->passes[i].ms / (double)eval->view_count;
     }
 }
 
@@ -176,18 +171,12 @@ static void take_means(struct orl_eval *eval)
 static enum orl_result list_views(const struct job *job, struct orl_eval *eval)
 {
     const struct orl_scene *scene = job->scene;
-    size_t held = orl_heldout_count(scene), at = 0, wanted = (size_t)job->params->views;
-    wanted = wanted && wanted < held ? wanted : held;
-    eval->views = orl_array(job->log, held, sizeof *eval->views);
+    eval->views = orl_array(job->log, orl_heldout_count(scene), sizeof *eval->views);
     if (!eval->views)
         return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        if (!scene->photos[i].test)
-            continue;
-        if ((at + 1) * wanted / held > at * wanted / held)
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (orl_heldout_chosen(scene, true, (size_t)job->params->views, i))
             eval->views[eval->view_count++].photo = i;
-        at++;
-    }
     return ORL_OK;
 }
 

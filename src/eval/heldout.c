@@ -78,6 +78,18 @@ size_t orl_heldout_count(const struct orl_scene *scene)
     return count;
 }
 
+bool orl_heldout_chosen(const struct orl_scene *scene, bool test, size_t most, size_t photo)
+{
+    size_t count = 0, at = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        bool counts = scene->photos[i].test == test;
+        count += counts;
+        at += counts && i < photo;
+    }
+    size_t wanted = most && most < count ? most : count;
+    return scene->photos[photo].test == test && (at + 1) * wanted / count > at * wanted / count;
+}
+
 // --- the rendering ---
 
 // True when the rendering is at the scene's reference exposure. It then has to be brought to what

@@ -21,6 +21,9 @@ enum orl_result orl_heldout_load(const struct orl_log *log, const struct orl_sce
                                  struct orl_heldout *heldout) ORL_CHECK_RESULT;
 // The number of photographs that are held out.
 size_t orl_heldout_count(const struct orl_scene *scene);
+// True for `most` photographs, evenly chosen of those that are held out (test), or are not; for all
+// of them if there are fewer, or if most is 0.
+bool orl_heldout_chosen(const struct orl_scene *scene, bool test, size_t most, size_t photo);
 // Averages divide x divide pixels in linear light. Pixels left over at the end of a row or column
 // are dropped. U8 x3.
 enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_image *from,

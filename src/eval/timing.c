@@ -15,7 +15,8 @@ double orl_median(double *values, size_t count)
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-bool orl_timing_enough(const struct orl_timing_params *params, size_t frames, double start_s)
+// True when `frames` frames, the first begun at start_s, are enough.
+static bool is_enough(const struct orl_timing_params *params, size_t frames, double start_s)
 {
     return frames >= params->frames_max ||
            (frames >= ORL_TIMING_FRAMES_MIN && frames % params->views == 0 &&
@@ -48,12 +49,24 @@ static enum orl_result take_frames(const struct orl_timing_params *params, doubl
 {
     enum orl_result result = ORL_OK;
     double start = orl_time_s();
-    for (; result == ORL_OK && !orl_timing_enough(params, timing->frames, start); timing->frames++)
+    for (; result == ORL_OK && !is_enough(params, timing->frames, start); timing->frames++)
         result = draw(params, timing->frames, &ms[timing->frames], &cpu_ms[timing->frames]);
     timing->median_ms = orl_median(ms, timing->frames); // sorts
     timing->cpu_ms = orl_median(cpu_ms, timing->frames);
     timing->slowest_ms = ms[timing->frames - 1];
     return result;
+}
+
+struct orl_timing_pass *orl_timing_pass(struct orl_timing_pass *passes, size_t *count,
+                                        const char *name)
+{
+    for (size_t i = 0; i < *count; i++)
+        if (strcmp(passes[i].name, name) == 0)
+            return &passes[i];
+    if (*count == ORL_TIMING_PASSES_MAX)
+        return NULL;
+    passes[*count].name = name;
+    return &passes[(*count)++];
 }
 
 // Adds one frame's passes to the columns, which are `rows` long. New passes get a column.
@@ -63,14 +76,10 @@ static void note_passes(struct orl_gpu *gpu, struct orl_timing *timing, double *
     struct orl_pass_time times[ORL_TIMING_PASSES_MAX];
     size_t count = orl_gpu_take_times(gpu, times, ORL_TIMING_PASSES_MAX);
     for (size_t i = 0; i < count && i < ORL_TIMING_PASSES_MAX; i++) {
-        size_t k = 0;
-        while (k < timing->pass_count && strcmp(timing->passes[k].name, times[i].name) != 0)
-            k++;
-        if (k == ORL_TIMING_PASSES_MAX)
-            continue;
-        if (k == timing->pass_count)
-            timing->passes[timing->pass_count++].name = times[i].name;
-        columns[k * rows + frame] = times[i].ms;
+        const struct orl_timing_pass *pass =
+            orl_timing_pass(timing->passes, &timing->pass_count, times[i].name);
+        if (pass)
+            columns[(size_t)(pass - timing->passes) * rows + frame] = times[i].ms;
     }
 }
 

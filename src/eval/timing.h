@@ -46,8 +46,10 @@ enum orl_result orl_timing_show_time_step(struct orl_gpu *gpu, struct orl_scene 
                                           struct orl_renderer *renderer,
                                           size_t number) ORL_CHECK_RESULT;
 
-// True when `frames` frames, the first begun at start_s, are enough.
-bool orl_timing_enough(const struct orl_timing_params *params, size_t frames, double start_s);
+// The pass of this name among `passes`, of which there are at most ORL_TIMING_PASSES_MAX; added if it
+// is new. NULL: there is no room for it.
+struct orl_timing_pass *orl_timing_pass(struct orl_timing_pass *passes, size_t *count,
+                                        const char *name);
 // Median of the values, which it sorts. 0 when count is 0.
 double orl_median(double *values, size_t count);
 

@@ -57,20 +57,12 @@ static size_t neighbour(const struct orl_scene *scene, size_t photo)
 static enum orl_result choose_views(const struct orl_log *log, const struct orl_scene *scene,
                                     size_t most, struct views *views)
 {
-    size_t train = 0, at = 0;
-    for (size_t i = 0; i < scene->photo_count; i++)
-        train += !scene->photos[i].test;
-    size_t wanted = train < (most + 1) / 2 ? train : (most + 1) / 2;
     views->count = 0;
-    views->items = orl_array(log, 2 * wanted, sizeof *views->items);
+    views->items = orl_array(log, most + 1, sizeof *views->items);
     if (!views->items)
         return ORL_ERR_MEMORY;
     for (size_t i = 0; i < scene->photo_count; i++) {
-        if (scene->photos[i].test)
-            continue;
-        bool chosen = (at + 1) * wanted / train > at * wanted / train;
-        at++;
-        if (!chosen)
+        if (!orl_heldout_chosen(scene, false, (most + 1) / 2, i))
             continue;
         struct orl_view view = drawn_size(&scene->photos[i].view);
         size_t other = neighbour(scene, i);

@@ -11,7 +11,7 @@ struct orl_point_ranking {
     uint32_t *pixels; // owned, per point of the scene: pixels of all views that it wins
     size_t count;
 };
-// Ranks by the views of training photographs and views between neighbours, at most `max_views`. At
+// Ranks by the views of training photographs and views between neighbours, at most `max_views` > 0. At
 // every pixel of coarser and coarser pictures of a view one point of the nearest surface is chosen:
 // that which wins the most pixels of all views. A point ranks by the coarsest picture that it is
 // chosen in, then by its pixels. So the points that no view shows are last, those that only full

@@ -43,26 +43,21 @@ static enum orl_result copy_photos(const struct orl_log *log, const struct orl_s
 enum orl_result orl_validation_load(const struct orl_log *log, const struct orl_scene *scene,
                                     size_t most, int divide, struct orl_validation *validation)
 {
-    size_t train = scene->photo_count - orl_heldout_count(scene), at = 0;
+    size_t train = scene->photo_count - orl_heldout_count(scene);
     memset(validation, 0, sizeof *validation);
     if (train < ORL_VALIDATION_TRAIN_MIN)
         return orl_fail(log, ORL_ERR_DATA,
                         "%s: %zu photographs that are not held out; three are needed, to render "
                         "one from two others", scene->dir, train);
-    size_t wanted = most && most < train ? most : train;
-    validation->views = orl_array(log, wanted, sizeof *validation->views);
+    validation->views = orl_array(log, most && most < train ? most : train, sizeof *validation->views);
     validation->skip = orl_array(log, scene->photo_count, sizeof *validation->skip);
     enum orl_result result =
         validation->views && validation->skip ? copy_photos(log, scene, validation)
                                               : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        if (scene->photos[i].test)
-            continue;
-        if ((at + 1) * wanted / train > at * wanted / train)
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
+        if (orl_heldout_chosen(scene, false, most, i))
             result = orl_heldout_load(log, scene, i, divide,
                                       &validation->views[validation->count++]);
-        at++;
-    }
     if (result != ORL_OK)
         orl_validation_finish(validation);
     return result;
