@@ -247,7 +247,7 @@ static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
 {
     orl_photos_follow_time_step(&r->photos);
     bool early = r->prefetch && orl_prefetch_time_step(r->prefetch) == r->scene->frame;
-    r->photos.source = early ? orl_prefetch_source(r->prefetch) : NULL;
+    orl_prefetch_show(early ? r->prefetch : NULL, &r->photos);
     orl_hull_expect(frame->proxy, early ? r->prefetch : NULL);
     enum orl_result result = orl_proxy_update(frame);
     r->photos.depth_key = orl_photos_depth_key(frame);

@@ -1,6 +1,7 @@
 // The next time step of a sequence, prepared while one is drawn: the same pictures, and nothing is read
 // twice.
 #include <math.h>
+#include <unistd.h>
 
 #include "figure_scene.h"
 #include "render/hull/prefetch.h"
@@ -187,7 +188,7 @@ static void files_are_read_once(void **state)
     }
     orl_proxy_finish(gpu, &s.proxy);
     assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, 0, &s.proxy), ORL_OK);
-    s.photos.source = orl_prefetch_source(prefetch);
+    orl_prefetch_show(prefetch, &s.photos);
     orl_hull_expect(&s.proxy, prefetch);
     assert_int_equal(orl_proxy_update(&s.frame), ORL_OK);
     assert_int_equal(s.proxy.vertex_count, count);
@@ -224,25 +225,75 @@ static void another_hull_is_not_taken(void **state)
     finish_stage(&s);
 }
 
-// What is missing is left to the frame that shows the time step.
+// A time step without all of its files is left to the frame that shows it.
 static void missing_files_are_left_alone(void **state)
 {
     (void)state;
     struct stage s;
-    struct orl_image image;
-    struct voxels voxels;
-    struct orl_mesh mesh;
+    struct prefetch *prefetch;
     setup_stage(&s);
     s.f.scene.frame = 1;
-    uint64_t key = orl_voxels_key(&s.frame);
     remove_file(orl_scene_photo_path(NULL, &s.f.scene, 3));
     s.f.scene.frame = 0;
+    assert_int_equal(orl_prefetch_create(&s.frame, 1, &prefetch), ORL_OK);
+    assert_null(prefetch);
+    orl_prefetch_show(prefetch, &s.photos);
+    assert_null(s.photos.ahead);
+    finish_stage(&s);
+}
+
+// So is a file that turns out to be broken.
+static void broken_files_are_left_alone(void **state)
+{
+    (void)state;
+    struct stage s;
+    struct voxels voxels;
+    struct orl_mesh mesh;
+    struct orl_image image;
+    setup_stage(&s);
+    s.f.scene.frame = 1;
+    char *photo = orl_scene_photo_path(NULL, &s.f.scene, 3), *mask = orl_scene_mask_path(NULL, &s.f.scene, 2);
+    uint64_t key = orl_voxels_key(&s.frame);
+    s.f.scene.frame = 0;
+    assert_int_equal(truncate(photo, 100), 0);
+    assert_int_equal(truncate(mask, 50), 0);
     struct prefetch *prefetch = prepare(&s);
-    struct photo_source *source = orl_prefetch_source(prefetch);
-    assert_false(source->take_photo(source, 0, &image));
-    assert_false(source->take_mask(source, 0, &image));
+    orl_prefetch_show(prefetch, &s.photos);
+    assert_int_equal(orl_photo_loader_take(s.photos.ahead, 3, true, &image), PHOTO_FAILED);
+    assert_int_equal(orl_photo_loader_take(s.photos.ahead, 2, true, &image), PHOTO_READ);
+    orl_image_finish(&image);
+    assert_null(s.photos.masks_ahead[2].data);
     assert_false(orl_prefetch_take_hull(gpu, prefetch, key, &voxels, &mesh));
     orl_prefetch_destroy(gpu, &prefetch);
+    free(photo);
+    free(mask);
+    finish_stage(&s);
+}
+
+// Nothing is read again that a frame has taken, or reads itself, until it is asked for again.
+static void loader_reads_what_is_asked_for(void **state)
+{
+    (void)state;
+    static const size_t first[] = {1, 3}, second[] = {3};
+    struct stage s;
+    struct photo_loader *loader;
+    struct orl_image image;
+    setup_stage(&s);
+    assert_int_equal(orl_photo_loader_create(NULL, &s.f.scene, false, &loader), ORL_OK);
+    assert_int_equal(orl_photo_loader_take(loader, 3, true, &image), PHOTO_AWAITED); // is the caller's
+    assert_int_equal(orl_photo_loader_take(loader, 2, false, &image), PHOTO_AWAITED);
+    for (int round = 0; round < 2; round++) {
+        orl_photo_loader_want(loader, first, 2);
+        orl_photo_loader_wait(loader);
+        assert_int_equal(orl_photo_loader_take(loader, 1, false, &image), PHOTO_READ);
+        assert_int_equal(image.width, W);
+        orl_image_finish(&image);
+        assert_int_equal(orl_photo_loader_take(loader, 1, round, &image), PHOTO_AWAITED);
+    }
+    orl_photo_loader_want(loader, second, 1); // it was read, and stays
+    assert_int_equal(orl_photo_loader_take(loader, 3, false, &image), PHOTO_READ);
+    orl_image_finish(&image);
+    orl_photo_loader_destroy(&loader);
     finish_stage(&s);
 }
 
@@ -254,6 +305,8 @@ int main(void)
         cmocka_unit_test(files_are_read_once),
         cmocka_unit_test(another_hull_is_not_taken),
         cmocka_unit_test(missing_files_are_left_alone),
+        cmocka_unit_test(broken_files_are_left_alone),
+        cmocka_unit_test(loader_reads_what_is_asked_for),
     };
     int failed = cmocka_run_group_tests_name("prefetch", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

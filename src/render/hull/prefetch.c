@@ -7,9 +7,6 @@
 #include "core/memory.h"
 #include "render/hull/voxel_proxy.h"
 
-// Photographs that are read but not taken may take this much host memory, bytes.
-static const size_t PHOTO_BYTES_MAX = (size_t)256 << 20;
-
 // The hull's way; each step is done by the thread (T) or by the caller (C).
 enum step {
     STEP_READ,    // T: silhouettes are read
@@ -20,17 +17,13 @@ enum step {
     STEP_NONE,    // there is no hull, or it cannot be made
 };
 
-enum arrival { UNREAD, BEING_READ, READ, TAKEN };
-
 struct prefetch {
-    struct photo_source source; // first: the functions that take pictures get it
-    struct orl_scene scene; // the thread's: of the frame, but showing the time step; photos: a copy
     // Not changed after the start.
-    int time_step;
-    size_t photo_count;
+    struct orl_scene scene; // of the frame, but showing the time step; photos: a copy
+    struct photo_loader *photos;
     size_t *masked;         // photographs whose silhouettes make the hull
     size_t masked_count;
-    bool linear, wants_mesh, has_thread;
+    bool wants_mesh, has_thread;
     int side;
     uint64_t key;           // orl_voxels_key of the time step
     pthread_t thread;
@@ -38,19 +31,17 @@ struct prefetch {
 
     pthread_mutex_t lock;   // guards the rest
     pthread_cond_t changed;
-    bool ends, broken;      // broken: files of the time step are missing
+    bool ends;
     enum step step;         // what is done next; cones, voxels and mesh belong to who does it
     struct cones cones;
     struct voxels voxels;
     struct orl_mesh mesh;
-    struct orl_image *mask, *photo; // per photograph of the scene
-    enum arrival *arrival;          // of photographs
-    size_t *wanted, wanted_count, bytes;
+    struct orl_image *mask; // per photograph of the scene; owned, and filled ahead of STEP_CARVE
 };
 
 int orl_prefetch_time_step(const struct prefetch *prefetch)
 {
-    return prefetch->time_step;
+    return prefetch->scene.frame;
 }
 
 // --- the thread ---
@@ -94,54 +85,18 @@ static bool is_of_thread(enum step step)
     return step == STEP_READ || step == STEP_LIST;
 }
 
-static bool next_photo(const struct prefetch *a, size_t *photo)
-{
-    for (size_t i = 0; i < a->wanted_count && a->bytes < PHOTO_BYTES_MAX; i++) {
-        *photo = a->wanted[i];
-        if (a->arrival[*photo] == UNREAD)
-            return true;
-    }
-    return false;
-}
-
-// As go_on, of a photograph.
-static void read_photo(struct prefetch *a, size_t photo)
-{
-    struct orl_image image = {0};
-    a->arrival[photo] = BEING_READ;
-    pthread_mutex_unlock(&a->lock);
-    enum orl_result result = orl_photo_read(NULL, &a->scene, photo, a->linear, &image);
-    pthread_mutex_lock(&a->lock);
-    a->arrival[photo] = result == ORL_OK ? READ : TAKEN;
-    a->photo[photo] = image;
-    a->bytes += result == ORL_OK ? orl_image_bytes(&image) : 0;
-    pthread_cond_broadcast(&a->changed);
-}
-
 static void *work(void *priv)
 {
     struct prefetch *a = priv;
-    // The scene's check of its files, as it is done for every time step that is shown.
-    bool broken = orl_scene_set_frame(NULL, &a->scene, a->time_step) != ORL_OK;
     pthread_mutex_lock(&a->lock);
-    a->broken = broken;
-    if (broken)
-        a->step = STEP_NONE;
-    pthread_cond_broadcast(&a->changed);
-    while (!a->ends && !a->broken) {
-        size_t photo;
+    while (!a->ends)
         if (is_of_thread(a->step))
             go_on(a);
-        else if (next_photo(a, &photo))
-            read_photo(a, photo);
         else
             pthread_cond_wait(&a->changed, &a->lock);
-    }
     pthread_mutex_unlock(&a->lock);
     return NULL;
 }
-
-// --- pictures ---
 
 // Waits until the hull's next step is not the thread's.
 static void wait_for_hull(struct prefetch *a)
@@ -150,41 +105,6 @@ static void wait_for_hull(struct prefetch *a)
     while (is_of_thread(a->step))
         pthread_cond_wait(&a->changed, &a->lock);
     pthread_mutex_unlock(&a->lock);
-}
-
-static bool take_photo(struct photo_source *source, size_t photo, struct orl_image *image)
-{
-    struct prefetch *a = (struct prefetch *)source;
-    pthread_mutex_lock(&a->lock);
-    while (a->arrival[photo] == BEING_READ)
-        pthread_cond_wait(&a->changed, &a->lock);
-    bool there = a->arrival[photo] == READ;
-    a->arrival[photo] = TAKEN; // the caller reads it now if it is not there
-    if (there) {
-        *image = a->photo[photo];
-        memset(&a->photo[photo], 0, sizeof a->photo[photo]);
-        a->bytes -= orl_image_bytes(image);
-        pthread_cond_broadcast(&a->changed);
-    }
-    pthread_mutex_unlock(&a->lock);
-    return there;
-}
-
-static bool take_mask(struct photo_source *source, size_t photo, struct orl_image *mask)
-{
-    struct prefetch *a = (struct prefetch *)source;
-    wait_for_hull(a); // the thread fills the masks
-    bool there = a->mask[photo].data != NULL;
-    if (there) {
-        *mask = a->mask[photo];
-        memset(&a->mask[photo], 0, sizeof a->mask[photo]);
-    }
-    return there;
-}
-
-struct photo_source *orl_prefetch_source(struct prefetch *a)
-{
-    return a ? &a->source : NULL;
 }
 
 // --- start and end ---
@@ -214,28 +134,27 @@ enum orl_result orl_prefetch_create(const struct frame *frame, int time_step, st
     *out = a;
     if (!a)
         return ORL_ERR_MEMORY;
-    a->source = (struct photo_source){take_photo, take_mask};
     a->scene = *frame->scene;
-    a->scene.frame = a->time_step = time_step;
-    a->photo_count = count;
-    a->linear = frame->radiance;
     a->scene.photos = orl_array(log, count, sizeof *a->scene.photos);
     a->mask = orl_array(log, count, sizeof *a->mask);
-    a->photo = orl_array(log, count, sizeof *a->photo);
-    a->arrival = orl_array(log, count, sizeof *a->arrival);
-    a->wanted = orl_array(log, count, sizeof *a->wanted);
     pthread_mutex_init(&a->lock, NULL);
     pthread_cond_init(&a->changed, NULL);
-    enum orl_result result =
-        a->scene.photos && a->mask && a->photo && a->arrival && a->wanted ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
+    bool whole = a->scene.photos && a->mask;
+    enum orl_result result = whole ? ORL_OK : ORL_ERR_MEMORY;
+    if (whole) {
         memcpy(a->scene.photos, frame->scene->photos, count * sizeof *a->scene.photos);
-        result = prepare_hull(frame, a);
+        // The check of files that every time step gets which is shown.
+        whole = orl_scene_set_frame(NULL, &a->scene, time_step) == ORL_OK;
     }
-    a->has_thread = result == ORL_OK && pthread_create(&a->thread, NULL, work, a) == 0;
-    if (result == ORL_OK && !a->has_thread)
-        result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read the next time step");
-    if (result != ORL_OK)
+    if (whole)
+        result = prepare_hull(frame, a);
+    if (whole && result == ORL_OK) {
+        a->has_thread = pthread_create(&a->thread, NULL, work, a) == 0;
+        if (!a->has_thread ||
+            orl_photo_loader_create(NULL, &a->scene, frame->radiance, &a->photos) != ORL_OK)
+            result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read the next time step");
+    }
+    if (!whole || result != ORL_OK)
         orl_prefetch_destroy(frame->gpu, out);
     return result;
 }
@@ -252,10 +171,9 @@ void orl_prefetch_destroy(struct orl_gpu *gpu, struct prefetch **prefetch)
         pthread_mutex_unlock(&a->lock);
         pthread_join(a->thread, NULL);
     }
-    for (size_t i = 0; a->mask && a->photo && i < a->photo_count; i++) {
+    orl_photo_loader_destroy(&a->photos);
+    for (size_t i = 0; a->mask && i < a->scene.photo_count; i++)
         orl_image_finish(&a->mask[i]);
-        orl_image_finish(&a->photo[i]);
-    }
     pthread_mutex_destroy(&a->lock);
     pthread_cond_destroy(&a->changed);
     orl_buf_destroy(gpu, &a->field);
@@ -265,9 +183,6 @@ void orl_prefetch_destroy(struct orl_gpu *gpu, struct prefetch **prefetch)
     free(a->scene.photos);
     free(a->masked);
     free(a->mask);
-    free(a->photo);
-    free(a->arrival);
-    free(a->wanted);
     free(a);
     *prefetch = NULL;
 }
@@ -276,11 +191,15 @@ void orl_prefetch_destroy(struct orl_gpu *gpu, struct prefetch **prefetch)
 
 void orl_prefetch_want(struct prefetch *a, const size_t *photos, size_t count)
 {
-    pthread_mutex_lock(&a->lock);
-    memcpy(a->wanted, photos, count * sizeof *photos);
-    a->wanted_count = count;
-    pthread_cond_broadcast(&a->changed);
-    pthread_mutex_unlock(&a->lock);
+    orl_photo_loader_want(a->photos, photos, count);
+}
+
+void orl_prefetch_show(struct prefetch *a, struct photos *photos)
+{
+    if (a)
+        wait_for_hull(a); // the thread fills the masks
+    photos->ahead = a ? a->photos : NULL;
+    photos->masks_ahead = a ? a->mask : NULL;
 }
 
 static enum step step_of(struct prefetch *a)
@@ -321,17 +240,8 @@ enum orl_result orl_prefetch_collect(struct orl_gpu *gpu, struct prefetch *a)
 
 void orl_prefetch_wait(struct prefetch *a)
 {
-    size_t photo;
     wait_for_hull(a);
-    pthread_mutex_lock(&a->lock);
-    for (bool busy = true; busy && !a->broken;) {
-        busy = next_photo(a, &photo);
-        for (size_t i = 0; i < a->wanted_count; i++)
-            busy = busy || a->arrival[a->wanted[i]] == BEING_READ;
-        if (busy)
-            pthread_cond_wait(&a->changed, &a->lock);
-    }
-    pthread_mutex_unlock(&a->lock);
+    orl_photo_loader_wait(a->photos);
 }
 
 bool orl_prefetch_take_hull(struct orl_gpu *gpu, struct prefetch *a, uint64_t key,

@@ -1,6 +1,7 @@
 // Private to src/render: what the next time step of a sequence needs, made while this one is drawn.
-// A thread reads its silhouettes and photographs, the device carves its hull between the passes of this
-// frame and its end, and the thread makes a mesh of that. Pictures are the same without it.
+// Photographs are read ahead (photos/photo_loader.h). A thread reads the silhouettes, the device carves
+// their hull between the passes of this frame and its end, and the thread makes a mesh of that. Pictures
+// are the same without it.
 #ifndef ORL_RENDER_PREFETCH_H
 #define ORL_RENDER_PREFETCH_H
 
@@ -10,7 +11,8 @@
 struct prefetch;
 
 // Starts to read what `frame` would need if it showed `time_step`. The frame's proxy must be up to
-// date. What cannot be read is left to the frame that shows the time step, which says why.
+// date. What cannot be read is left to the frame that shows the time step, which says why. *out is
+// NULL if files of the time step are missing.
 enum orl_result orl_prefetch_create(const struct frame *frame, int time_step,
                                     struct prefetch **out) ORL_CHECK_RESULT;
 // Waits for the file that is being read. Needs no orl_prefetch_wait.
@@ -30,7 +32,8 @@ void orl_prefetch_wait(struct prefetch *prefetch);
 // for a mesh. prefetch may be NULL.
 bool orl_prefetch_take_hull(struct orl_gpu *gpu, struct prefetch *prefetch, uint64_t key,
                             struct voxels *voxels, struct orl_mesh *mesh);
-// The photographs that were asked for, and the masks of silhouettes that take part in the hull. NULL of NULL.
-struct photo_source *orl_prefetch_source(struct prefetch *prefetch);
+// The photographs and masks that were read are there for the frame that is drawn now; NULL: there are
+// none.
+void orl_prefetch_show(struct prefetch *prefetch, struct photos *photos);
 
 #endif

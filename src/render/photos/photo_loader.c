@@ -7,7 +7,8 @@
 #include "core/memory.h"
 #include "io/picture.h"
 
-enum { READ_AHEAD = 6 }; // photographs that are kept in host memory until the renderer takes them
+// Photographs that are read but not taken may take this much host memory, bytes.
+static const size_t BYTES_MAX = (size_t)256 << 20;
 
 enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene *scene,
                                size_t index, bool linear, struct orl_image *image)
@@ -29,6 +30,8 @@ enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene
     return result;
 }
 
+enum state { UNREAD, BEING_READ, READ, FAILED, TAKEN };
+
 // All but the first five members are guarded by `lock`.
 struct photo_loader {
     const struct orl_log *log;
@@ -37,21 +40,21 @@ struct photo_loader {
     bool has_thread; // the thread itself does not look
     pthread_t thread;
     pthread_mutex_t lock;
-    pthread_cond_t changed; // something is wanted, or the thread must end
+    pthread_cond_t changed;
     bool ends;
     size_t *wanted;         // owned: photographs, the most urgent first
     size_t wanted_count;
-    struct orl_image *read; // owned, per photograph of the scene; without pixels: not read
-    bool *failed;           // owned, per photograph of the scene
-    size_t read_count;
+    enum state *states;     // owned, per photograph of the scene
+    struct orl_image *read; // owned, per photograph of the scene
+    size_t bytes;           // of what is read
 };
 
-// The photograph to read next. Returns false if there is none or too many wait to be taken.
+// The photograph to read next. Returns false if there is none or too much waits to be taken.
 static bool next_photo(const struct photo_loader *l, size_t *photo)
 {
-    for (size_t i = 0; i < l->wanted_count && l->read_count < READ_AHEAD; i++) {
+    for (size_t i = 0; i < l->wanted_count && l->bytes < BYTES_MAX; i++) {
         *photo = l->wanted[i];
-        if (!l->read[*photo].data && !l->failed[*photo])
+        if (l->states[*photo] == UNREAD)
             return true;
     }
     return false;
@@ -68,14 +71,14 @@ static void *read_photos(void *priv)
             continue;
         }
         struct orl_image image = {0};
+        l->states[photo] = BEING_READ;
         pthread_mutex_unlock(&l->lock);
         enum orl_result result = orl_photo_read(l->log, l->scene, photo, l->linear, &image);
         pthread_mutex_lock(&l->lock);
-        l->failed[photo] = result != ORL_OK;
-        if (result != ORL_OK)
-            continue;
+        l->states[photo] = result == ORL_OK ? READ : FAILED;
         l->read[photo] = image;
-        l->read_count++;
+        l->bytes += orl_image_bytes(&image);
+        pthread_cond_broadcast(&l->changed);
     }
     pthread_mutex_unlock(&l->lock);
     return NULL;
@@ -93,10 +96,10 @@ enum orl_result orl_photo_loader_create(const struct orl_log *log, const struct 
     l->linear = linear;
     l->wanted = orl_array(log, scene->photo_count, sizeof *l->wanted);
     l->read = orl_array(log, scene->photo_count, sizeof *l->read);
-    l->failed = orl_array(log, scene->photo_count, sizeof *l->failed);
+    l->states = orl_array(log, scene->photo_count, sizeof *l->states);
     pthread_mutex_init(&l->lock, NULL);
     pthread_cond_init(&l->changed, NULL);
-    enum orl_result result = l->wanted && l->read && l->failed ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = l->wanted && l->read && l->states ? ORL_OK : ORL_ERR_MEMORY;
     l->has_thread = result == ORL_OK && pthread_create(&l->thread, NULL, read_photos, l) == 0;
     if (result == ORL_OK && !l->has_thread)
         result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read photographs");
@@ -106,17 +109,28 @@ enum orl_result orl_photo_loader_create(const struct orl_log *log, const struct 
     return result;
 }
 
+// The image is the caller's now.
+static struct orl_image give(struct photo_loader *l, size_t photo, enum state next)
+{
+    struct orl_image image = l->read[photo];
+    l->read[photo] = (struct orl_image){0};
+    l->bytes -= orl_image_bytes(&image);
+    l->states[photo] = next;
+    pthread_cond_broadcast(&l->changed);
+    return image;
+}
+
 // Forgets photographs that were read and are no longer wanted.
 static void drop_unwanted(struct photo_loader *l)
 {
-    for (size_t i = 0; i < l->scene->photo_count && l->read_count > 0; i++) {
+    for (size_t i = 0; i < l->scene->photo_count && l->bytes > 0; i++) {
         bool is_wanted = false;
         for (size_t k = 0; k < l->wanted_count; k++)
             is_wanted = is_wanted || l->wanted[k] == i;
-        if (is_wanted || !l->read[i].data)
+        if (is_wanted || l->states[i] != READ)
             continue;
-        orl_image_finish(&l->read[i]);
-        l->read_count--;
+        struct orl_image image = give(l, i, UNREAD);
+        orl_image_finish(&image);
     }
 }
 
@@ -128,7 +142,7 @@ void orl_photo_loader_destroy(struct photo_loader **loader)
     if (l->has_thread) {
         pthread_mutex_lock(&l->lock);
         l->ends = true;
-        pthread_cond_signal(&l->changed);
+        pthread_cond_broadcast(&l->changed);
         pthread_mutex_unlock(&l->lock);
         pthread_join(l->thread, NULL);
         l->wanted_count = 0;
@@ -138,7 +152,7 @@ void orl_photo_loader_destroy(struct photo_loader **loader)
     pthread_cond_destroy(&l->changed);
     free(l->wanted);
     free(l->read);
-    free(l->failed);
+    free(l->states);
     free(l);
     *loader = NULL;
 }
@@ -148,25 +162,39 @@ void orl_photo_loader_want(struct photo_loader *l, const size_t *photos, size_t 
     pthread_mutex_lock(&l->lock);
     memcpy(l->wanted, photos, count * sizeof *photos);
     l->wanted_count = count;
+    for (size_t i = 0; i < count; i++)
+        if (l->states[photos[i]] == TAKEN)
+            l->states[photos[i]] = UNREAD;
     drop_unwanted(l);
-    pthread_cond_signal(&l->changed);
+    pthread_cond_broadcast(&l->changed);
     pthread_mutex_unlock(&l->lock);
 }
 
-enum photo_arrival orl_photo_loader_take(struct photo_loader *l, size_t photo,
+enum photo_arrival orl_photo_loader_take(struct photo_loader *l, size_t photo, bool now,
                                          struct orl_image *image)
 {
-    enum photo_arrival arrival = PHOTO_AWAITED;
     pthread_mutex_lock(&l->lock);
-    if (l->failed[photo]) {
-        arrival = PHOTO_FAILED;
-    } else if (l->read[photo].data) {
-        arrival = PHOTO_READ;
-        *image = l->read[photo];
-        memset(&l->read[photo], 0, sizeof l->read[photo]);
-        l->read_count--;
-        pthread_cond_signal(&l->changed);
+    while (now && l->states[photo] == BEING_READ)
+        pthread_cond_wait(&l->changed, &l->lock);
+    enum state state = l->states[photo];
+    if (state == READ)
+        *image = give(l, photo, TAKEN);
+    else if (now && state == UNREAD)
+        l->states[photo] = TAKEN;
+    pthread_mutex_unlock(&l->lock);
+    return state == READ ? PHOTO_READ : state == FAILED ? PHOTO_FAILED : PHOTO_AWAITED;
+}
+
+void orl_photo_loader_wait(struct photo_loader *l)
+{
+    pthread_mutex_lock(&l->lock);
+    for (bool busy = true; busy;) {
+        size_t photo;
+        busy = next_photo(l, &photo);
+        for (size_t i = 0; i < l->wanted_count; i++)
+            busy = busy || l->states[l->wanted[i]] == BEING_READ;
+        if (busy)
+            pthread_cond_wait(&l->changed, &l->lock);
     }
     pthread_mutex_unlock(&l->lock);
-    return arrival;
 }

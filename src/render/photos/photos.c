@@ -445,8 +445,8 @@ static enum orl_result load_color(const struct frame *frame, size_t index)
     struct photos *photos = frame->photos;
     struct orl_image image = {0};
     enum orl_result result = ORL_OK;
-    struct photo_source *source = photos->source;
-    if (!source || !source->take_photo(source, index, &image))
+    if (!photos->ahead ||
+        orl_photo_loader_take(photos->ahead, index, true, &image) != PHOTO_READ)
         result = orl_photo_read(orl_gpu_log(frame->gpu), photos->scene, index, photos->radiance,
                                 &image);
     ORL_THEN(result, orl_photos_put(frame->gpu, photos, index, &image));
@@ -649,9 +649,12 @@ static enum orl_result make_alpha(const struct frame *frame, size_t index,
         return result;
     }
     enum orl_result result = ORL_OK;
-    struct photo_source *source = photos->source;
-    if (!source || !source->take_mask(source, index, &mask))
+    if (photos->masks_ahead && photos->masks_ahead[index].data) {
+        mask = photos->masks_ahead[index];
+        photos->masks_ahead[index] = (struct orl_image){0};
+    } else {
         result = orl_photo_mask_read(log, photos->scene, index, &mask);
+    }
     if (result == ORL_OK) {
         orl_silhouette_mark_edges(&mask);
         result = orl_bridge_resize(log, &mask, c->width, c->height, alpha);

@@ -22,13 +22,6 @@ struct photo_state {
     struct orl_camera drawn_camera; // of the depth map that the resident one is picked from
 };
 
-// Pictures that were read before a frame asks for them (hull/prefetch.h).
-struct photo_source {
-    // True: it is there, as orl_photo_read and orl_photo_mask_read read it, and the caller's now.
-    bool (*take_photo)(struct photo_source *source, size_t photo, struct orl_image *image);
-    bool (*take_mask)(struct photo_source *source, size_t photo, struct orl_image *mask);
-};
-
 struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
@@ -54,7 +47,9 @@ struct photos {
     struct orl_sensor sensor;
     float ev_darkest, ev_brightest; // of the photographs in use
     uint64_t depth_key;             // orl_photos_depth_key of the frame that is drawn
-    struct photo_source *source;    // of the time step that is drawn; NULL: files are read
+    // What was read of the time step that is drawn before it was (hull/prefetch.h). NULL: nothing.
+    struct photo_loader *ahead;
+    struct orl_image *masks_ahead;  // per photograph, as orl_photo_mask_read reads them
     struct photo_loader *loader;    // NULL until progressive.c needs it
     bool were_absent;               // some that the last progressive frame chose
     struct photo_costs {            // seconds that each took last, for progressive.c

@@ -74,7 +74,7 @@ static enum orl_result upload(struct loading *loading, size_t photo)
     struct photos *photos = loading->frame->photos;
     struct orl_image image = {0};
     enum orl_result result = ORL_OK;
-    switch (orl_photo_loader_take(photos->loader, photo, &image)) {
+    switch (orl_photo_loader_take(photos->loader, photo, false, &image)) {
     case PHOTO_AWAITED:
         break;
     case PHOTO_FAILED:
