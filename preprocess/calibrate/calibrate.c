@@ -76,18 +76,14 @@ static void say(const struct calibration *c, const char *what)
              registered(c), c->job->source_count, what);
 }
 
-// Takes the model in `path` if it is better than the best so far. One with a camera that no lens makes
-// does not count, unless there is no other: the photographs that joined last may have bent it.
+// Takes the model in `path` if it is better than the best so far. ORL_ERR_FORMAT: it has a camera that no
+// lens makes, and does not count.
 static enum orl_result consider(struct calibration *c, const char *path)
 {
     struct candidate candidate = {.features = c->features};
-    enum orl_result result = orl_colmap_read(c->best.path ? NULL : c->job->log, path, &candidate.model);
-    if (result == ORL_ERR_FORMAT && c->best.path) {
-        say(c, "COLMAP's next model has a camera that no ordinary lens makes and does not count");
-        return ORL_OK;
-    }
+    enum orl_result result = orl_colmap_read(NULL, path, &candidate.model);
     if (result == ORL_ERR_FORMAT)
-        return orl_fail(c->job->log, ORL_ERR_DATA, "%s: " LENS_ADVICE, path);
+        return result;
     if (result != ORL_OK)
         return orl_fail(c->job->log, result, "%s: the model cannot be read", path);
     for (size_t i = 0; i < candidate.model.camera_count; i++)
@@ -102,22 +98,39 @@ static enum orl_result consider(struct calibration *c, const char *path)
     return c->best.path ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-// `out` is a model itself, or holds some in numbered folders.
+// `out` is a model itself, or holds some in numbered folders. One that does not count, which the
+// photographs that joined last may have bent, matters only if there is no other.
 static enum orl_result consider_all(struct calibration *c, const char *out)
 {
+    const struct orl_log *log = c->job->log;
+    struct orl_colmap_model model;
     struct orl_names names;
-    enum orl_result result = orl_dir_list(c->job->log, out, &names);
-    if (result == ORL_OK && orl_names_contain(&names, "cameras.bin"))
-        result = consider(c, out);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *path = orl_path_join(c->job->log, out, names.items[i]);
+    char *odd = NULL; // the last that does not count
+    enum orl_result result = orl_dir_list(log, out, &names);
+    bool one = result == ORL_OK && (orl_names_contain(&names, "cameras.bin") ||
+                                    orl_names_contain(&names, "cameras.txt"));
+    for (size_t i = 0; result == ORL_OK && i < (one ? 1 : names.count); i++) {
+        char *path = one ? orl_strdup(log, out) : orl_path_join(log, out, names.items[i]);
         if (!path)
             result = ORL_ERR_MEMORY;
         else if (orl_path_is_dir(path))
             result = consider(c, path);
-        free(path);
+        if (result == ORL_ERR_FORMAT) {
+            say(c, "COLMAP's next model has a camera that no ordinary lens makes and does not count");
+            free(odd);
+            odd = path;
+            result = ORL_OK;
+        } else {
+            free(path);
+        }
+    }
+    if (result == ORL_OK && odd && !c->best.path) {
+        result = orl_colmap_read(log, odd, &model); // for its word on what is wrong
+        if (result == ORL_ERR_FORMAT)
+            result = orl_fail(log, ORL_ERR_DATA, "%s: " LENS_ADVICE, odd);
     }
     orl_names_finish(&names);
+    free(odd);
     return result;
 }
 
@@ -140,7 +153,7 @@ static enum orl_result refine(struct calibration *c)
     ORL_THEN(result, orl_mapper_refine(c->job, joined.path, out, c->straight));
     if (result == ORL_OK) {
         c->best = (struct candidate){0};
-        result = consider(c, out);
+        result = consider_all(c, out);
         candidate_finish(&joined);
     }
     free(out);

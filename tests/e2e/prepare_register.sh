@@ -92,6 +92,10 @@ says "photographs of a fisheye lens"
 DOUBLE_ALONE=3.png DOUBLE_JOINED_FOCAL=0 run 0 prepare "$work/p" --out "$work/bent-later"
 says "a camera that no ordinary lens makes and does not count"
 prints "5 used, 4 registered"
+# So does another model of the same run.
+DOUBLE_ODD_FIRST=1 run 0 prepare "$work/p" --out "$work/odd-first"
+says "a camera that no ordinary lens makes and does not count"
+prints "5 used, 5 registered"
 
 # Masks reach COLMAP under its names, are undistorted as photographs are, and leave points out.
 photos "$work/m" 1.png.png
