@@ -64,9 +64,8 @@ static enum orl_result add_frame(const struct orl_log *log, const struct orl_sce
 static enum orl_result fill(const struct orl_log *log, const struct orl_progress *progress,
                             const struct orl_scene *scene, const char *dir)
 {
-    json_t *root = json_pack("{s:s, s:s, s:[], s:[], s:[], s:[]}", "camera_model", "PINHOLE",
-                             "ply_file_path", "points.ply", "train_filenames", "val_filenames",
-                             "test_filenames", "frames");
+    json_t *root = json_pack("{s:s, s:[], s:[], s:[], s:[]}", "camera_model", "PINHOLE",
+                             "train_filenames", "val_filenames", "test_filenames", "frames");
     char *file = orl_path_join(log, dir, "transforms.json");
     char *points = orl_path_join(log, dir, "points.ply");
     enum orl_result result = root && file && points ? ORL_OK : ORL_ERR_MEMORY;
@@ -78,7 +77,10 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
         orl_progress_report(progress, "export", (double)(i + 1), (double)scene->photo_count,
                             scene->photos[i].name);
     }
-    ORL_THEN(result, orl_points_write_from(log, points, &scene->points, scene->origin));
+    if (result == ORL_OK && scene->points.count) { // a cloud of none is no start for training
+        json_object_set_new(root, "ply_file_path", json_string("points.ply"));
+        result = orl_points_write_from(log, points, &scene->points, scene->origin);
+    }
     ORL_THEN(result, orl_json_write(log, file, root));
     json_decref(root);
     free(points);

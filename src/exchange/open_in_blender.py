@@ -110,7 +110,8 @@ def main():
     bpy.context.scene.collection.objects.link(place)
     place.matrix_world = up.rotation_difference(Vector((0, 0, 1))).to_matrix().to_4x4()
     cameras = [add_camera(f, place) for f in frames]
-    add_points(read_points(os.path.join(PLACE, root["ply_file_path"])), place)
+    if "ply_file_path" in root:  # a scene may have no points
+        add_points(read_points(os.path.join(PLACE, root["ply_file_path"])), place)
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = frames[0]["w"], frames[0]["h"]
     bpy.context.scene.camera = cameras[0]

@@ -28,6 +28,13 @@ runs 2 "$oriel" export made --as colmap --out other
 runs 2 "$oriel" export nowhere --as ply --out other.ply
 ls other* >/dev/null 2>&1 && fail "something was written"
 
+# A scene without points has no cloud to name.
+runs 0 "$oriel" import made/sparse --images made/images --out bare --points none
+runs 0 "$oriel" export bare --as nerfstudio --out bare-cameras
+[ ! -e bare-cameras/points.ply ] && jq -e 'has("ply_file_path") | not' bare-cameras/transforms.json >jq.txt ||
+    fail "a cloud of no points is written"
+runs 0 "$oriel" import bare-cameras/transforms.json --out bare-back
+
 # All points of levels of detail, also where a scene that is opened holds a sample of them.
 cp -r made paged
 rm paged/points.ply
