@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "core/memory.h"
-#include "gpu/check.h"
 #include "gpu/internal.h"
 
 static const char mesa_advice[] =
@@ -174,9 +173,6 @@ enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_p
     }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    const char *check = getenv("ORIEL_GPU_CHECK");
-    if (check && strcmp(check, "1") == 0 && (result = orl_check_create(log, &gpu->check)) != ORL_OK)
-        goto fail;
     orl_logf(log, ORL_LOG_DEBUG, "device: %s, OpenGL %s", gpu->caps.renderer, gpu->caps.version);
     *out = gpu;
     return ORL_OK;
@@ -194,7 +190,6 @@ void orl_gpu_destroy(struct orl_gpu **handle)
         orl_logf(gpu->log, ORL_LOG_ERROR, "%zu buffers, %zu textures still alive",
                  gpu->live_bufs, gpu->live_texs);
     if (gpu->current) {
-        orl_check_destroy(gpu->log, &gpu->check);
         orl_gpu_free_programs(gpu);
         orl_gpu_free_raster(gpu);
         orl_gpu_free_queries(gpu);

@@ -27,7 +27,6 @@ struct orl_gpu {
     bool failed;      // sticky: a GL error or a high-severity message
     bool lost;        // for good: the device was reset
     bool current;     // the context could be made current
-    struct orl_check *check; // of ORIEL_GPU_CHECK, owned; NULL: off
     struct orl_prog **progs; // programs made so far, owned
     size_t prog_count, prog_capacity;
     GLuint vertex_array, framebuffer; // of raster.c; 0: not created yet
@@ -52,19 +51,11 @@ struct shader_source {
     struct orl_bytes text;
     const char *files[ORL_SHADER_FILES_MAX]; // static strings
     size_t file_count;
-    bool checked; // its indexes are (check.h)
 };
 enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
                                        const struct orl_slot *slots, const char *defines,
-                                       bool checked, struct shader_source *source);
-// The text of one file below shaders/ as it is written, and its name as a static string. The caller
-// frees *owned.
-enum orl_result orl_shader_text(struct orl_gpu *gpu, const char *file, const char **name,
-                                const char **text, uint8_t **owned);
+                                       struct shader_source *source);
 void orl_shader_source_finish(struct shader_source *source);
-// With ORIEL_SHADER_DUMP=DIR in the environment, writes the expanded source to DIR. False, logged,
-// if that fails.
-bool orl_shader_dump(struct orl_gpu *gpu, GLenum type, const struct shader_source *source);
 
 // Mesa maps its cache of programs into memory and ends by SIGBUS when the disk is full. Oriel's own
 // cache does not spare it: it lacks the machine code of the software renderer. So this turns it off,
@@ -86,9 +77,6 @@ bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params
 void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
                   const int *image_layers);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
-GLuint orl_prog_id(const struct orl_prog *prog);
-// The index-th file of a program's source, below shaders/; of a raster program's first stage.
-const char *orl_prog_file(const struct orl_prog *prog, size_t index);
 void orl_gpu_free_raster(struct orl_gpu *gpu);
 
 // Logs every pending GL error as caused by `where`. True if there was none.

@@ -4,7 +4,6 @@
 
 #include "core/memory.h"
 #include "core/process.h"
-#include "gpu/check.h"
 #include "gpu/internal.h"
 
 enum { STAGES_MAX = 2 };
@@ -14,7 +13,6 @@ struct orl_prog {
     GLuint id;         // 0: it does not compile, which was logged once
     GLuint params_buf; // created by the first dispatch
     size_t params_size; // size of the program's block at binding 0; 0: no block
-    const char *files[ORL_SHADER_FILES_MAX]; // as struct shader_source has them
 };
 
 struct stage {
@@ -86,10 +84,7 @@ static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
     double start = orl_time_s();
     bool ok = true, cached = false;
     for (size_t i = 0; ok && i < count; i++)
-        ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, gpu->check && count == 1,
-                                    &sources[i]) == ORL_OK &&
-             orl_shader_dump(gpu, stages[i].type, &sources[i]);
-    memcpy(prog->files, sources[0].files, sizeof prog->files);
+        ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, &sources[i]) == ORL_OK;
     prog->id = glCreateProgram();
     // Only compute programs take long to compile.
     bool cacheable = count == 1;
@@ -175,16 +170,6 @@ bool orl_prog_reads(const struct orl_prog *prog, const char *name)
            glGetProgramResourceIndex(prog->id, GL_UNIFORM, name) != GL_INVALID_INDEX;
 }
 
-GLuint orl_prog_id(const struct orl_prog *prog)
-{
-    return prog->id;
-}
-
-const char *orl_prog_file(const struct orl_prog *prog, size_t index)
-{
-    return index < ORL_SHADER_FILES_MAX && prog->files[index] ? prog->files[index] : "?";
-}
-
 size_t orl_gpu_cached_programs(const struct orl_gpu *gpu)
 {
     return gpu->cached_progs;
@@ -256,7 +241,6 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
                               (GLsizeiptr)(b->size ? b->size : b->buf->size - b->offset));
     }
     orl_gpu_bind(d->textures, d->images, d->image_layers);
-    orl_check_begin(gpu->check);
     if (d->indirect) {
         glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, d->indirect->id);
         glDispatchComputeIndirect(0);
@@ -271,5 +255,4 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
                  (int)strcspn(d->prog->key, "\n"), d->prog->key);
         gpu->failed = true;
     }
-    orl_check_dispatch(gpu, d);
 }

@@ -1,6 +1,5 @@
 #include "gpu/raster.h"
 
-#include "gpu/check.h"
 #include "gpu/internal.h"
 
 // Vertex inputs and targets are set for every draw, since there are only a few draws a frame.
@@ -109,7 +108,6 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     if (r->barrier)
         glMemoryBarrier(r->barrier);
     orl_gpu_check_errors(gpu, "raster");
-    orl_check_raster(gpu, r);
 }
 
 void orl_gpu_free_raster(struct orl_gpu *gpu)

@@ -5,14 +5,15 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "gpu/check.h"
 #include "gpu/internal.h"
 #include "gpu/shader_table.h"
 
 enum { SHADER_MAX_BYTES = 1 << 20, INCLUDE_DEPTH_MAX = 8 };
 
-enum orl_result orl_shader_text(struct orl_gpu *gpu, const char *file, const char **name,
-                                const char **text, uint8_t **owned)
+// The text of one file below shaders/ as it is written, and its name as a static string. The caller
+// frees *owned.
+static enum orl_result read_text(struct orl_gpu *gpu, const char *file, const char **name,
+                                 const char **text, uint8_t **owned)
 {
     *owned = NULL;
     *text = NULL;
@@ -35,11 +36,13 @@ enum orl_result orl_shader_text(struct orl_gpu *gpu, const char *file, const cha
     return result;
 }
 
+// #line only numbers the files; the name is for people and other compilers.
 static enum orl_result append_line_mark(struct orl_gpu *gpu, struct shader_source *source, int line,
                                         size_t file_index)
 {
-    char mark[64];
-    int length = snprintf(mark, sizeof mark, "#line %d %zu\n", line, file_index);
+    char mark[256];
+    int length = snprintf(mark, sizeof mark, "// source %zu: %s\n#line %d %zu\n", file_index,
+                          source->files[file_index], line, file_index);
     return orl_bytes_add(gpu->log, &source->text, mark, (size_t)length);
 }
 
@@ -58,20 +61,6 @@ static const char *included_file(const char *line, const struct orl_slot *slots,
     return quoted;
 }
 
-// What every program includes ahead of its own text while indexes are checked.
-static const char check_file[] = "check/index.glsl";
-
-// Replaces the text of the index-th file by one that checks its indexes.
-static enum orl_result check_text(struct orl_gpu *gpu, size_t index, const char **text,
-                                  uint8_t **owned)
-{
-    char *checked = orl_check_source(gpu->log, *text, (unsigned)index);
-    free(*owned);
-    *owned = (uint8_t *)checked;
-    *text = checked;
-    return checked ? ORL_OK : ORL_ERR_MEMORY;
-}
-
 static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source, const char *file,
                               const struct orl_slot *slots, int depth)
 {
@@ -82,16 +71,12 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
             return ORL_OK; // already included
     if (depth > INCLUDE_DEPTH_MAX || source->file_count == ORL_COUNT(source->files))
         return orl_fail(gpu->log, ORL_ERR_FORMAT, "shader %s: includes too deep or too many", file);
-    enum orl_result result = orl_shader_text(gpu, file, &name, &text, &owned);
+    enum orl_result result = read_text(gpu, file, &name, &text, &owned);
     if (result != ORL_OK)
         return result;
     size_t index = source->file_count++;
     source->files[index] = name;
-    if (source->checked && depth == 0)
-        result = expand(gpu, source, check_file, NULL, 1);
-    if (result == ORL_OK && source->checked && strcmp(file, check_file) != 0)
-        result = check_text(gpu, index, &text, &owned);
-    ORL_THEN(result, append_line_mark(gpu, source, 1, index));
+    result = append_line_mark(gpu, source, 1, index);
     int number = 1;
     for (const char *line = text; result == ORL_OK && *line; number++) {
         const char *end = strchr(line, '\n');
@@ -113,10 +98,10 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
 
 enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
                                        const struct orl_slot *slots, const char *defines,
-                                       bool checked, struct shader_source *source)
+                                       struct shader_source *source)
 {
     static const char head[] = "#version 450 core\n";
-    *source = (struct shader_source){.checked = checked};
+    *source = (struct shader_source){0};
     enum orl_result result = orl_bytes_add(gpu->log, &source->text, head, sizeof head - 1);
     for (const char *line = defines; result == ORL_OK && line && *line;) {
         size_t length = strcspn(line, "\n");

@@ -15,13 +15,13 @@ trap 'rm -rf "$work" "$dump"' EXIT
 failed=0
 count=0
 for file in "$dump"/*.*; do
-    name=$(sed -n 's|^// source 0: ||p' "$file")
+    name=$(sed -n 's|^// source 0: ||p' "$file" | head -n 1)
     # As OpenGL SPIR-V, which wants an explicit location of everything; GLSL gives them itself.
     if ! glslangValidator -G -l --auto-map-locations -o "$work/spv" "$file" >"$work/log" 2>&1 ||
             grep -q WARNING "$work/log"; then
         echo "glslang: shaders/$name:"
         grep -E 'ERROR|WARNING' "$work/log" | head -n 5
-        sed -n 's|^// source|    source|p' "$file"
+        sed -n 's|^// source|    source|p' "$file" | sort -u
         failed=1
     elif ! spirv-val --target-env opengl4.5 "$work/spv" 2>"$work/log"; then
         echo "spirv-val: shaders/$name:"

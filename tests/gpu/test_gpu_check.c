@@ -1,49 +1,33 @@
 // ORIEL_GPU_CHECK: wrong indexes and values that are not finite are found and named.
-#include "gpu/check.h"
+#include "core/memory.h"
+#include "gpu_check/gpu_check.h"
 #include "gpu_test.h"
 
 enum { SIDE = 4 };
 
 static char *dir;
-static char messages[8192];
+static char *messages;
 
-static void collect(void *priv, enum orl_log_level level, const char *message)
-{
-    (void)priv, (void)level;
-    size_t used = strlen(messages);
-    snprintf(messages + used, sizeof messages - used, "%s\n", message);
-}
-
-// A device that takes fill/fill_pull.comp from here; its includes are read there as well.
+// A device that takes fill/fill_pull.comp from here.
 static struct orl_gpu *open_device(const char *shader)
 {
-    static const struct orl_log log = {ORL_LOG_INFO, collect, NULL};
-    const struct orl_gpu_params params = {.shader_dir = dir, .cache_dir = ""};
+    const struct orl_gpu_params params = {.shader_dir = dir};
     struct orl_gpu *gpu;
-    char *path = test_path(dir, "fill/fill_pull.comp"), *index = test_path(dir, "check/index.glsl");
-    char *folders[] = {test_path(dir, "fill"), test_path(dir, "check")};
-    const char *text = NULL, *name;
-    uint8_t *owned = NULL;
-    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
-        assert_int_equal(orl_dir_make(NULL, folders[i]), ORL_OK);
-        free(folders[i]);
-    }
+    char *path = test_path(dir, "fill/fill_pull.comp");
+    assert_int_equal(orl_file_make_folder(NULL, path), ORL_OK);
     assert_int_equal(orl_file_write(NULL, path, shader, strlen(shader)), ORL_OK);
-    messages[0] = '\0';
-    assert_int_equal(orl_gpu_create(&log, NULL, &gpu), ORL_OK); // with the shaders of the program
-    assert_int_equal(orl_shader_text(gpu, "check/index.glsl", &name, &text, &owned), ORL_OK);
-    assert_int_equal(orl_file_write(NULL, index, text, strlen(text)), ORL_OK);
-    orl_gpu_destroy(&gpu);
-    messages[0] = '\0';
-    assert_int_equal(orl_gpu_create(&log, &params, &gpu), ORL_OK);
+    assert_int_equal(orl_gpu_create(NULL, &params, &gpu), ORL_OK);
     free(path);
-    free(index);
     return gpu;
 }
 
-// Runs the shader once with a buffer of 8 floats and a texture of SIDE x SIDE.
+// Runs the shader once with a buffer of 8 floats and a texture of SIDE x SIDE. What is found is in
+// `messages`.
 static enum orl_result run(const char *shader, uint32_t word)
 {
+    size_t size;
+    free(messages);
+    gpu_check = (struct gpu_check){.to = open_memstream(&messages, &size)};
     struct orl_gpu *gpu = open_device(shader);
     struct orl_buf *buf = NULL, *other = NULL;
     struct orl_tex *tex = NULL, *view = NULL;
@@ -69,6 +53,7 @@ static enum orl_result run(const char *shader, uint32_t word)
     orl_buf_destroy(gpu, &buf);
     orl_buf_destroy(gpu, &other);
     orl_gpu_destroy(&gpu);
+    fclose(gpu_check.to);
     return result;
 }
 
@@ -95,8 +80,10 @@ static void right_indexes_are_no_fault(void **state)
                          "    imageStore(picture, ivec2(i, 0), vec4(p[i & 1].b[n]));\n"
                          "    imageStore(picture, ivec2(i, -1), vec4(1.0));\n" // defined
                          "}\n", 2), ORL_OK);
-    assert_string_equal(messages, "checked on the device: 1 dispatches and draws, 3 targets; "
-                                  "0 faults\n");
+    assert_string_equal(messages, "");
+    assert_int_equal(gpu_check.runs, 1);
+    assert_int_equal(gpu_check.targets, 3);
+    assert_int_equal(gpu_check.faults, 0);
 }
 
 // What `shader` is said of, and that it is a failure.
@@ -149,19 +136,18 @@ static void odd_text_keeps_its_lines(void **state)
                                         "a[i\n+\n1]\n", "x.y[\n]\n", ", b[i]", "1[i]", "a[i](b)"};
     for (size_t i = 0; i < ORL_COUNT(texts); i++) {
         size_t lines[2] = {0};
-        char *checked = orl_check_source(NULL, texts[i], 3);
-        assert_non_null(checked);
-        for (const char *p = texts[i]; *p; p++)
+        char *text = orl_format(NULL, "#version 450\n%s\n", texts[i]);
+        char *checked = gpu_check_text(text), *from = strstr(checked, gpu_check_index);
+        assert_non_null(from);
+        from += strlen(gpu_check_index);
+        for (const char *p = strchr(text, '\n'); *p; p++)
             lines[0] += *p == '\n';
-        for (const char *p = checked; *p; p++)
+        for (const char *p = from; *p && strncmp(p, "// site ", 8) != 0; p++)
             lines[1] += *p == '\n';
         assert_int_equal(lines[0], lines[1]);
         free(checked);
+        free(text);
     }
-    struct orl_check_site site = {47, 9999, 4000};
-    uint32_t word = orl_check_site_pack(&site);
-    struct orl_check_site got = orl_check_site_unpack(word);
-    assert_memory_equal(&got, &site, sizeof site);
 }
 
 static int set_up(void **state)

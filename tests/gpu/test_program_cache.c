@@ -174,6 +174,7 @@ static void mesa_keeps_nothing_on_a_full_disk(void **state)
 
 int main(void)
 {
+    unsetenv("ORIEL_SHADER_DUMP"); // with which there is no cache
     struct orl_gpu *gpu = gpu_test_device();
     GLint formats = 0;
     glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);

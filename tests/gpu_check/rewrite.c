@@ -4,28 +4,13 @@
 // compared with the size of what they read. The rewriting knows tokens, but no grammar. Where it
 // takes a declaration for an index, the program does not compile.
 #include <ctype.h>
-#include <stdio.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "gpu/check.h"
+#include "gpu_check/gpu_check.h"
 
-enum { COLUMN_BITS = 12, LINE_BITS = 14 };
-
-uint32_t orl_check_site_pack(const struct orl_check_site *site)
-{
-    return (uint32_t)site->file << (LINE_BITS + COLUMN_BITS) |
-           (site->line & ((1u << LINE_BITS) - 1)) << COLUMN_BITS |
-           (site->column & ((1u << COLUMN_BITS) - 1));
-}
-
-struct orl_check_site orl_check_site_unpack(uint32_t word)
-{
-    return (struct orl_check_site){.file = word >> (LINE_BITS + COLUMN_BITS),
-                                   .line = word >> COLUMN_BITS & ((1u << LINE_BITS) - 1),
-                                   .column = word & ((1u << COLUMN_BITS) - 1)};
-}
+#define COUNT(array) (sizeof(array) / sizeof *(array))
 
 // --- text ---
 
@@ -34,13 +19,16 @@ static bool is_word(char c)
     return isalnum((unsigned char)c) || c == '_';
 }
 
-// A copy in which comments are spaces.
-static char *blank_comments(const struct orl_log *log, const char *text)
+// What Oriel puts where a file begins and goes on, ahead of #line.
+static const char file_mark[] = "// source ";
+
+// A copy in which comments are spaces, but for the marks of files.
+static char *blank_comments(const char *text)
 {
-    char *copy = orl_strdup(log, text);
-    for (char *p = copy; p && *p; p++) {
-        bool block = p[0] == '/' && p[1] == '*';
-        if (!block && !(p[0] == '/' && p[1] == '/'))
+    char *copy = strdup(text);
+    for (char *p = copy; *p; p++) {
+        bool block = p[0] == '/' && p[1] == '*', line = p[0] == '/' && p[1] == '/';
+        if ((!block && !line) || strncmp(p, file_mark, strlen(file_mark)) == 0)
             continue;
         const char *end = block ? strstr(p + 2, "*/") : strchr(p, '\n');
         end = end ? end + (block ? 2 : 0) : p + strlen(p);
@@ -132,7 +120,7 @@ static bool type_ends_at(const char *start, const char *p)
     static const char *const others[] = {"return", "else", "do", "case"};
     const char *before = skip_spaces_back(start, p);
     const char *word = word_start(start, before);
-    return word < before && !is_one_of(word, (size_t)(before - word), others, ORL_COUNT(others)) &&
+    return word < before && !is_one_of(word, (size_t)(before - word), others, COUNT(others)) &&
            !directive_ends_between(start, before, p);
 }
 
@@ -168,43 +156,48 @@ static bool is_literal(const char *from, const char *to)
 // --- rewriting ---
 
 struct writer {
-    const struct orl_log *log;
     const char *text, *end; // without comments
-    unsigned file;
-    struct orl_bytes out;
-    bool failed;
+    FILE *out, *notes;      // the new text; where each index is
+    unsigned sites;         // indexes so far
 };
 
-static void put(struct writer *w, const char *text, size_t length)
+static void put(FILE *out, const char *from, const char *to)
 {
-    w->failed = w->failed || orl_bytes_add(w->log, &w->out, text, length) != ORL_OK;
-}
-
-static void put_text(struct writer *w, const char *text)
-{
-    put(w, text, strlen(text));
+    fwrite(from, 1, (size_t)(to - from), out);
 }
 
 // The same on one line, so that the lines after it keep their numbers.
-static void put_line(struct writer *w, const char *from, const char *to)
+static void put_line(FILE *out, const char *from, const char *to)
 {
     for (; from < to; from++)
-        put(w, *from == '\n' ? " " : from, 1);
+        fputc(*from == '\n' ? ' ' : *from, out);
 }
 
-static void put_site(struct writer *w, const char *at)
+// The file and line of a place, by the marks ahead of it.
+static void put_place(FILE *out, const char *text, const char *at)
 {
-    struct orl_check_site site = {.file = w->file, .line = 1};
-    const char *line = w->text;
-    for (const char *p = w->text; p < at; p++)
-        if (*p == '\n') {
-            site.line++;
-            line = p + 1;
-        }
-    site.column = (unsigned)(at - line);
-    char text[32];
-    snprintf(text, sizeof text, ", %uu)", orl_check_site_pack(&site));
-    put_text(w, text);
+    static const char line_mark[] = "#line ";
+    const char *file = "";
+    long line = 1;
+    for (const char *p = text, *next; (next = strchr(p, '\n')) && next < at; p = next + 1) {
+        if (strncmp(p, file_mark, strlen(file_mark)) == 0)
+            file = p + strcspn(p, ":") + 2;
+        if (strncmp(p, line_mark, strlen(line_mark)) == 0)
+            line = strtol(p + strlen(line_mark), NULL, 10);
+        else
+            line++;
+    }
+    fprintf(out, "shaders/%.*s:%ld: ", (int)strcspn(file, "\n"), file, line);
+}
+
+// Ends a call of a checking function with the number of the expression, and notes where that is.
+static void put_site(struct writer *w, const char *from, const char *to)
+{
+    fprintf(w->out, ", %uu)", ++w->sites);
+    fprintf(w->notes, "// site %u: ", w->sites);
+    put_place(w->notes, w->text, from);
+    put_line(w->notes, from, to);
+    fputc('\n', w->notes);
 }
 
 static void rewrite(struct writer *w, const char *from, const char *to);
@@ -216,15 +209,15 @@ static const char *rewrite_index(struct writer *w, const char *open, const char 
     bool type = close + 1 < w->end && (close[1] == '(' || is_word(close[1]));
     if (close == to || !base || type || is_literal(open + 1, close) ||
         is_declared_at(w->text, base)) {
-        put(w, open, 1);
+        fputc(*open, w->out);
         return open + 1;
     }
-    put_text(w, "[orl_check_index(");
+    fputs("[orl_check_index(", w->out);
     rewrite(w, open + 1, close);
-    put_text(w, ", ");
-    put_line(w, base, open);
-    put_text(w, ".length()");
-    put_site(w, open);
+    fputs(", ", w->out);
+    put_line(w->out, base, open);
+    fputs(".length()", w->out);
+    put_site(w, base, close + 1);
     return close;
 }
 
@@ -240,80 +233,62 @@ static const char *argument_end(const char *p, const char *end)
 // At a word: the call of a texel function with its coordinates checked, else the word.
 static const char *rewrite_word(struct writer *w, const char *word, const char *to)
 {
-    static const char *const fetch[] = {"texelFetch"};
     const char *open = word;
     while (open < to && is_word(*open))
         open++;
     size_t length = (size_t)(open - word);
-    bool fetches = is_one_of(word, length, fetch, ORL_COUNT(fetch));
-    bool image = (length > 5 && memcmp(word, "image", 5) == 0 && isupper((unsigned char)word[5]) &&
-                  strncmp(word, "imageSize", 9) != 0);
+    bool fetches = length == 10 && memcmp(word, "texelFetch", 10) == 0;
+    bool image = length > 5 && memcmp(word, "image", 5) == 0 && isupper((unsigned char)word[5]) &&
+                 strncmp(word, "imageSize", 9) != 0;
     const char *close = open < to && *open == '(' ? closing(open, to) : to;
     if ((!fetches && !image) || close == to) {
-        put(w, word, length);
+        put(w->out, word, open);
         return open;
     }
     const char *name_end = argument_end(open + 1, close);
     const char *at_end = name_end < close ? argument_end(name_end + 1, close) : close;
-    put(w, word, (size_t)(name_end - word));
+    put(w->out, word, name_end);
     if (name_end == close)
         return close;
-    put_text(w, fetches ? ", orl_check_fetch(" : ", orl_check_image(");
+    fputs(fetches ? ", orl_check_fetch(" : ", orl_check_image(", w->out);
     rewrite(w, name_end + 1, at_end);
-    put_text(w, fetches ? ", textureSize(" : ", imageSize(");
-    put_line(w, open + 1, name_end);
+    fputs(fetches ? ", textureSize(" : ", imageSize(", w->out);
+    put_line(w->out, open + 1, name_end);
     if (fetches)
-        put_line(w, at_end, close); // the level
-    put_text(w, ")");
-    put_site(w, word);
+        put_line(w->out, at_end, close); // the level
+    fputc(')', w->out);
+    put_site(w, word, close + 1);
     rewrite(w, at_end, close);
     return close;
 }
 
 static void rewrite(struct writer *w, const char *from, const char *to)
 {
-    for (const char *p = from; p < to && !w->failed;) {
-        if (*p == '[') {
+    for (const char *p = from; p < to;) {
+        if (*p == '[')
             p = rewrite_index(w, p, to);
-        } else if (is_word(*p)) {
+        else if (is_word(*p))
             p = rewrite_word(w, p, to);
-        } else {
-            put(w, p, 1);
-            p++;
-        }
+        else
+            fputc(*p++, w->out);
     }
 }
 
-char *orl_check_source(const struct orl_log *log, const char *text, unsigned file)
+char *gpu_check_text(const char *text)
 {
-    char *blank = blank_comments(log, text);
-    if (!blank)
-        return NULL;
-    struct writer w = {.log = log, .text = blank, .end = blank + strlen(blank), .file = file};
-    put_text(&w, "");
-    rewrite(&w, w.text, w.end);
+    char *blank = blank_comments(text), *out = NULL, *notes = NULL;
+    size_t out_size, notes_size, version = strcspn(text, "\n");
+    struct writer w = {.text = blank, .end = blank + strlen(blank),
+                       .out = open_memstream(&out, &out_size),
+                       .notes = open_memstream(&notes, &notes_size)};
+    // Behind #version, ahead of the marks that number the lines of files.
+    put(w.out, blank, blank + version);
+    fprintf(w.out, "\n%s", gpu_check_index);
+    rewrite(&w, blank + version, w.end);
+    fclose(w.notes);
+    fputs(notes, w.out);
+    fclose(w.out);
+    free(notes);
     free(blank);
-    if (w.failed) {
-        free(w.out.data);
-        return NULL;
-    }
-    return w.out.data;
-}
-
-const char *orl_check_expression(const char *text, const struct orl_check_site *site,
-                                 size_t *length)
-{
-    const char *p = text;
-    for (unsigned line = 1; p && line < site->line; line++) {
-        p = strchr(p, '\n');
-        p = p ? p + 1 : NULL;
-    }
-    if (!p || strcspn(p, "\n") <= site->column)
-        return NULL;
-    p += site->column;
-    const char *start = *p == '[' ? base_start(text, p) : p;
-    p += strcspn(p, "[(");
-    const char *close = closing(p, p + strlen(p));
-    *length = start && *close ? (size_t)(close + 1 - start) : 0;
-    return *length ? start : NULL;
+    return out;
 }

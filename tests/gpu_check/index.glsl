@@ -1,8 +1,8 @@
-// Ahead of every compute program while ORIEL_GPU_CHECK is set (src/gpu/check_source.c): an index
+// Ahead of every compute program while ORIEL_GPU_CHECK is set (rewrite.c): an index
 // outside of its array is recorded and brought to the nearest end, so that the program goes on.
 layout(std430, binding = 7) buffer orl_check_record {
     uint orl_check_count; // wrong indexes since the record was cleared
-    uint orl_check_site;  // where the first of them is: struct orl_check_site
+    uint orl_check_site;  // the number of the first of them
     int orl_check_first;  // its value
     int orl_check_size;   // elements of the array
 };
