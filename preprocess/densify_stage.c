@@ -71,22 +71,11 @@ static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_
     struct orl_atomic_file file = {0};
     char *fusion = orl_job_path(job, "stereo/fusion.cfg");
     char *sources = orl_job_path(job, "stereo/patch-match.cfg");
-    FILE *out = NULL;
     enum orl_result result = fusion && sources ? orl_job_write_list(job, fusion, train)
                                                : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_atomic_begin(job->log, sources, &file));
-    if (result != ORL_OK)
-        goto end;
-    out = fopen(file.temp, "w");
-    if (!out) {
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be written", sources);
-        goto end;
-    }
-    result = write_sources(job, out, train);
-    if (fclose(out) != 0 && result == ORL_OK)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be written", sources);
+    ORL_THEN(result, orl_atomic_open(job->log, sources, &file));
+    ORL_THEN(result, write_sources(job, file.stream, train));
     ORL_THEN(result, orl_atomic_commit(job->log, &file));
-end:
     orl_atomic_abort(&file);
     free(fusion);
     free(sources);

@@ -143,14 +143,28 @@ enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
     return result;
 }
 
-FILE *orl_atomic_stream(struct orl_atomic_file *file)
+enum orl_result orl_atomic_open(const struct orl_log *log, const char *path,
+                                struct orl_atomic_file *file)
 {
+    ORL_TRY(orl_atomic_begin(log, path, file));
     int copy = fcntl(file->fd, F_DUPFD_CLOEXEC, 0);
-    FILE *stream = copy >= 0 ? fdopen(copy, "wb") : NULL;
-    if (copy >= 0 && !stream)
+    file->stream = copy >= 0 ? fdopen(copy, file->direct ? "wb" : "w+b") : NULL;
+    if (file->stream)
+        return ORL_OK;
+    if (copy >= 0)
         close(copy);
-    file->streamed = stream != NULL;
-    return stream;
+    enum orl_result result = fail_errno(log, path);
+    orl_atomic_abort(file);
+    return result;
+}
+
+// True if all that was written to the stream is in the file.
+static bool close_stream(struct orl_atomic_file *file)
+{
+    bool good = !ferror(file->stream);
+    good = fclose(file->stream) == 0 && good;
+    file->stream = NULL;
+    return good;
 }
 
 // File systems without fsync count as flushed.
@@ -192,10 +206,13 @@ enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_f
 {
     enum orl_result result = ORL_OK;
     struct stat st;
-    if (!file->direct) {
+    bool streamed = file->stream != NULL;
+    if (streamed && !close_stream(file))
+        result = fail_errno(log, file->path);
+    if (result == ORL_OK && !file->direct) {
         if (fstat(file->fd, &st) != 0 || !flush_to_disk(file->fd))
             result = fail_errno(log, file->path);
-        else if (st.st_size == 0 && !file->streamed)
+        else if (st.st_size == 0 && !streamed)
             result = orl_fail(log, ORL_ERR_IO, "%s: nothing was written", file->path);
         else if (rename(file->temp, file->path) != 0)
             result = fail_errno(log, file->path);
@@ -210,6 +227,8 @@ void orl_atomic_abort(struct orl_atomic_file *file)
 {
     if (!file)
         return;
+    if (file->stream)
+        fclose(file->stream);
     if (file->temp && file->fd >= 0) {
         if (!file->direct)
             unlink(file->temp);
@@ -224,14 +243,9 @@ enum orl_result orl_file_write(const struct orl_log *log, const char *path, cons
                                size_t size)
 {
     struct orl_atomic_file file;
-    ORL_TRY(orl_atomic_begin(log, path, &file));
-    FILE *stream = orl_atomic_stream(&file);
-    bool ok = stream && fwrite(data, 1, size, stream) == size;
-    if (stream && fclose(stream) != 0)
-        ok = false;
-    enum orl_result result = ok ? orl_atomic_commit(log, &file) : fail_errno(log, path);
-    orl_atomic_abort(&file);
-    return result;
+    ORL_TRY(orl_atomic_open(log, path, &file));
+    fwrite(data, 1, size, file.stream);
+    return orl_atomic_commit(log, &file);
 }
 
 // True when no writer is active: the file or folder is old enough and its lock is free.

@@ -38,14 +38,16 @@ enum orl_result orl_file_open(const struct orl_log *log, const char *path,
 struct orl_atomic_file {
     char *temp, *path; // owned; equal when written directly
     int fd;            // of temp
-    bool direct, streamed;
+    FILE *stream;      // of orl_atomic_open, owned: not for fclose
+    bool direct;
 };
-// Creates an empty file->temp. The writer opens it by name or asks for a stream.
+// Creates an empty file->temp, which the writer opens by name.
 enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
                                  struct orl_atomic_file *file) ORL_CHECK_RESULT;
-// A stream to write to, which the caller must close before the commit. NULL on failure, with errno
-// set.
-FILE *orl_atomic_stream(struct orl_atomic_file *file);
+// The same with file->stream to write to, and to read from unless it is written directly. That a write
+// failed need not be asked: the commit fails then.
+enum orl_result orl_atomic_open(const struct orl_log *log, const char *path,
+                                struct orl_atomic_file *file) ORL_CHECK_RESULT;
 // Flushes the file and gives it its final name. On failure an earlier file of that name stays.
 enum orl_result orl_atomic_commit(const struct orl_log *log,
                                   struct orl_atomic_file *file) ORL_CHECK_RESULT;

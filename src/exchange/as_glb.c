@@ -1,6 +1,5 @@
 // Binary glTF 2.0: one primitive of points with KHR_gaussian_splatting. A program that does not
 // know the extension draws its points in COLOR_0.
-#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -138,43 +137,37 @@ static json_t *describe(const struct orl_scene *scene, const struct orl_gaussian
 
 // --- the file ---
 
-static bool write_u32(FILE *stream, uint32_t value)
+static void write_u32(FILE *stream, uint32_t value)
 {
     const uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16),
                               (uint8_t)(value >> 24)};
-    return fwrite(bytes, sizeof bytes, 1, stream) == 1;
+    fwrite(bytes, sizeof bytes, 1, stream);
 }
 
-static bool write_all(FILE *stream, const struct orl_gaussians *g, const char *json)
+static void write_all(FILE *stream, const struct orl_gaussians *g, const char *json)
 {
     size_t length = strlen(json), padded = (length + 3) / 4 * 4, bytes = g->points->count * stride(g);
-    bool good = fwrite("glTF", 4, 1, stream) == 1 && write_u32(stream, 2) &&
-                write_u32(stream, (uint32_t)(12 + 8 + padded + 8 + bytes)) &&
-                write_u32(stream, (uint32_t)padded) && fwrite("JSON", 4, 1, stream) == 1 &&
-                fprintf(stream, "%s%*s", json, (int)(padded - length), "") > 0 &&
-                write_u32(stream, (uint32_t)bytes) && fwrite("BIN", 4, 1, stream) == 1;
-    for (size_t i = 0; good && i < g->points->count; i++) {
+    fputs("glTF", stream);
+    write_u32(stream, 2);
+    write_u32(stream, (uint32_t)(12 + 8 + padded + 8 + bytes));
+    write_u32(stream, (uint32_t)padded);
+    fprintf(stream, "JSON%s%*s", json, (int)(padded - length), "");
+    write_u32(stream, (uint32_t)bytes);
+    fwrite("BIN", 4, 1, stream); // with its 0
+    for (size_t i = 0; i < g->points->count; i++) {
         struct vertex vertex;
         pack(g, i, &vertex);
-        good = fwrite(&vertex, stride(g), 1, stream) == 1;
+        fwrite(&vertex, stride(g), 1, stream);
     }
-    return good;
 }
 
 static enum orl_result write_file(const struct orl_log *log, const char *path,
                                   const struct orl_gaussians *g, const char *json)
 {
-    struct orl_atomic_file file = {0};
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result == ORL_OK) {
-        FILE *stream = orl_atomic_stream(&file);
-        bool good = stream && write_all(stream, g, json);
-        good = stream && fclose(stream) == 0 && good;
-        result = good ? orl_atomic_commit(log, &file)
-                      : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    }
-    orl_atomic_abort(&file);
-    return result;
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(log, path, &file));
+    write_all(file.stream, g, json);
+    return orl_atomic_commit(log, &file);
 }
 
 ORL_EXPORT_WRITER(orl_export_glb)

@@ -1,7 +1,6 @@
 // The PLY of 2D Gaussian splatting: scales are logarithms, the opacity is a logit, and harmonics
 // above the constant are ordered by channel. Normals are the true ones, where trainers write 0, and
 // radii are there for Oriel's own reader.
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,21 +12,21 @@
 // Position, normal, harmonics, opacity, scales, rotation, radius.
 enum { FLOATS_MAX = 3 + 3 + 3 * ORL_HARMONICS_MAX + 1 + 3 + 4 + 1 };
 
-static bool write_header(FILE *stream, const struct orl_gaussians *g, bool thin)
+static void write_header(FILE *stream, const struct orl_gaussians *g, bool thin)
 {
-    bool good = fprintf(stream, "ply\nformat binary_little_endian 1.0\nelement vertex %zu\n"
-                                "property float x\nproperty float y\nproperty float z\n"
-                                "property float nx\nproperty float ny\nproperty float nz\n"
-                                "property float f_dc_0\nproperty float f_dc_1\n"
-                                "property float f_dc_2\n", g->points->count) > 0;
+    fprintf(stream, "ply\nformat binary_little_endian 1.0\nelement vertex %zu\n"
+                    "property float x\nproperty float y\nproperty float z\n"
+                    "property float nx\nproperty float ny\nproperty float nz\n"
+                    "property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\n",
+            g->points->count);
     for (int k = 0; k < 3 * (g->terms - 1); k++)
-        good = good && fprintf(stream, "property float f_rest_%d\n", k) > 0;
-    return good && fprintf(stream, "property float opacity\n"
-                                   "property float scale_0\nproperty float scale_1\n%s"
-                                   "property float rot_0\nproperty float rot_1\n"
-                                   "property float rot_2\nproperty float rot_3\n"
-                                   "property float radius\nend_header\n",
-                           thin ? "property float scale_2\n" : "") > 0;
+        fprintf(stream, "property float f_rest_%d\n", k);
+    fprintf(stream, "property float opacity\n"
+                    "property float scale_0\nproperty float scale_1\n%s"
+                    "property float rot_0\nproperty float rot_1\n"
+                    "property float rot_2\nproperty float rot_3\n"
+                    "property float radius\nend_header\n",
+            thin ? "property float scale_2\n" : "");
 }
 
 // Returns how many floats the record has.
@@ -51,15 +50,12 @@ static size_t pack(const struct orl_gaussians *g, size_t i, bool thin, float rec
     return at + 5;
 }
 
-static bool write_all(FILE *stream, const struct orl_gaussians *g, bool thin)
+static void write_all(FILE *stream, const struct orl_gaussians *g, bool thin)
 {
     float record[FLOATS_MAX];
-    bool good = write_header(stream, g, thin);
-    for (size_t i = 0; good && i < g->points->count; i++) {
-        size_t floats = pack(g, i, thin, record);
-        good = fwrite(record, sizeof *record, floats, stream) == floats;
-    }
-    return good;
+    write_header(stream, g, thin);
+    for (size_t i = 0; i < g->points->count; i++)
+        fwrite(record, sizeof *record, pack(g, i, thin, record), stream);
 }
 
 ORL_EXPORT_WRITER(orl_export_splats)
@@ -68,15 +64,11 @@ ORL_EXPORT_WRITER(orl_export_splats)
     struct orl_atomic_file file = {0};
     enum orl_result result =
         orl_gaussians_fit(log, progress, scene, params->degree < 0 ? 1 : params->degree, &g);
-    ORL_THEN(result, orl_atomic_begin(log, params->out, &file));
+    ORL_THEN(result, orl_atomic_open(log, params->out, &file));
     if (result == ORL_OK) {
-        FILE *stream = orl_atomic_stream(&file);
-        bool good = stream && write_all(stream, &g, params->thin);
-        good = stream && fclose(stream) == 0 && good;
-        result = good ? orl_atomic_commit(log, &file)
-                      : orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
+        write_all(file.stream, &g, params->thin);
+        result = orl_atomic_commit(log, &file);
     }
-    orl_atomic_abort(&file);
     orl_gaussians_finish(&g);
     return result;
 }

@@ -1,7 +1,6 @@
 // JPEG through libjpeg-turbo. libjpeg reports errors by longjmp. State that must
 // survive a longjmp is in struct jpeg_job, owned by the caller of the function that
 // calls setjmp.
-#include <errno.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -268,26 +267,17 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
     struct orl_atomic_file file = {0};
     struct jpeg_output out = {.image = image, .quality = quality};
     start_job(&job, (j_common_ptr)&info, log, path);
-    enum orl_result result = ORL_OK;
     if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: a JPEG has at most %ld pixels a side",
                         path, JPEG_MAX_DIMENSION);
-    if (exif)
-        result = orl_exif_encode(log, exif, &out.exif, &out.exif_size);
-    ORL_THEN(result, orl_atomic_begin(log, path, &file));
-    if (result != ORL_OK)
-        goto end;
-    out.stream = orl_atomic_stream(&file);
-    if (!out.stream) {
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-        goto end;
+    enum orl_result result = exif ? orl_exif_encode(log, exif, &out.exif, &out.exif_size) : ORL_OK;
+    ORL_THEN(result, orl_atomic_open(log, path, &file));
+    if (result == ORL_OK) {
+        out.stream = file.stream;
+        result = encode(&job, &info, &out);
+        jpeg_destroy_compress(&info);
     }
-    result = encode(&job, &info, &out);
-    jpeg_destroy_compress(&info);
-    if (fclose(out.stream) != 0 && result == ORL_OK)
-        result = orl_fail(log, ORL_ERR_IO, "%s: cannot write all of it: %s", path, strerror(errno));
     ORL_THEN(result, orl_atomic_commit(log, &file));
-end:
     orl_atomic_abort(&file);
     free(out.exif);
     return result;

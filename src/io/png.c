@@ -1,6 +1,5 @@
 // PNG through libpng, which reports errors by longjmp. State that must survive a longjmp
 // is in struct png_job, owned by the caller of the function that calls setjmp.
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -343,23 +342,15 @@ enum orl_result orl_png_write(const struct orl_log *log, const char *path,
     ORL_REQUIRE(log, image->type == ORL_PIXEL_U8 && image->data);
     ORL_REQUIRE(log, image->channels == 1 || image->channels == 3);
     struct png_job job = {.log = log, .path = path};
-    struct orl_atomic_file file = {0};
-    ORL_TRY(orl_atomic_begin(log, path, &file));
-    FILE *stream = orl_atomic_stream(&file);
-    enum orl_result result = ORL_OK;
-    if (!stream) {
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-        goto end;
-    }
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(log, path, &file));
     job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, stop, take_warning);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    result = job.info ? encode(&job, stream, image)
-                      : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for a PNG writer", path);
+    enum orl_result result =
+        job.info ? encode(&job, file.stream, image)
+                 : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for a PNG writer", path);
     png_destroy_write_struct(&job.png, &job.info);
-    if (fclose(stream) != 0 && result == ORL_OK)
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
     ORL_THEN(result, orl_atomic_commit(log, &file));
-end:
     orl_atomic_abort(&file);
     return result;
 }

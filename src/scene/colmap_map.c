@@ -1,5 +1,4 @@
 // COLMAP's depth and normal maps (src/mvs/mat.h): "W&H&C&" and planes of float32.
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,28 +68,12 @@ enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path
                                      const struct orl_image *image)
 {
     ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->data);
-    size_t channels = (size_t)image->channels, width = (size_t)image->width;
-    struct orl_atomic_file file = {0};
-    float *row = orl_array(log, width, sizeof *row);
-    ORL_TRY_MEMORY(row);
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result != ORL_OK)
-        goto end;
-    FILE *stream = orl_atomic_stream(&file);
-    bool ok = stream && fprintf(stream, "%d&%d&%d&", image->width, image->height,
-                                image->channels) > 0;
-    for (size_t c = 0; ok && c < channels; c++)
-        for (size_t y = 0; ok && y < (size_t)image->height; y++) {
-            for (size_t x = 0; x < width; x++)
-                row[x] = image->f32[(y * width + x) * channels + c];
-            ok = fwrite(row, sizeof *row, width, stream) == width;
-        }
-    if (stream && fclose(stream) != 0)
-        ok = false;
-    result = ok ? orl_atomic_commit(log, &file)
-                : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-end:
-    orl_atomic_abort(&file);
-    free(row);
-    return result;
+    size_t channels = (size_t)image->channels;
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(log, path, &file));
+    fprintf(file.stream, "%d&%d&%d&", image->width, image->height, image->channels);
+    for (size_t c = 0; c < channels; c++)
+        for (size_t i = c; i < orl_image_bytes(image) / sizeof(float); i += channels)
+            fwrite(&image->f32[i], sizeof(float), 1, file.stream);
+    return orl_atomic_commit(log, &file);
 }

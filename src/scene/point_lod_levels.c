@@ -1,10 +1,8 @@
 // The pages and levels of points.lod, from blocks in their order.
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include "core/file.h"
@@ -49,14 +47,9 @@ static enum orl_result add_level(struct lod_levels *l, FILE *file)
     level->file = file;
     if (file)
         return ORL_OK;
-    enum orl_result result = orl_atomic_begin(l->log, l->path, &level->temp);
-    int copy = result == ORL_OK ? fcntl(level->temp.fd, F_DUPFD_CLOEXEC, 0) : -1;
-    level->file = copy >= 0 ? fdopen(copy, "w+b") : NULL; // it is read again
-    if (result == ORL_OK && !level->file)
-        result = failed(l);
-    if (copy >= 0 && !level->file)
-        close(copy);
-    return result;
+    ORL_TRY(orl_atomic_open(l->log, l->path, &level->temp));
+    level->file = level->temp.stream;
+    return ORL_OK;
 }
 
 enum orl_result orl_lod_levels_begin(const struct orl_log *log, const char *path, FILE *file,
@@ -80,8 +73,6 @@ void orl_lod_levels_destroy(struct lod_levels **levels)
     if (!l)
         return;
     for (int k = 0; k < l->count; k++) {
-        if (k > 0 && l->level[k]->file)
-            fclose(l->level[k]->file);
         orl_atomic_abort(&l->level[k]->temp);
         free(l->level[k]->pages);
         free(l->level[k]);
@@ -244,8 +235,7 @@ static enum orl_result write_table(struct lod_levels *l, struct lod_header *h)
     h->table_at = LOD_PAGES_AT + h->page_count * sizeof(struct orl_lod_data);
     h->table_hash = XXH3_64bits(table, h->page_count * sizeof *table);
     bool written = fwrite(table, sizeof *table, h->page_count, file) == h->page_count &&
-                   fseeko(file, 0, SEEK_SET) == 0 && fwrite(h, sizeof *h, 1, file) == 1 &&
-                   fflush(file) == 0;
+                   fseeko(file, 0, SEEK_SET) == 0 && fwrite(h, sizeof *h, 1, file) == 1;
     free(table);
     return written ? ORL_OK : failed(l);
 }

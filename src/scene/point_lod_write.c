@@ -21,7 +21,6 @@ struct writer {
     struct orl_disc_sizes sizes;
     struct orl_radii_limits limits;
     struct orl_atomic_file out;
-    FILE *file; // of out
     struct lod_levels *levels;
 };
 
@@ -134,18 +133,15 @@ static enum orl_result check_disk(const struct writer *w, const char *ply)
 
 static enum orl_result begin(struct writer *w)
 {
-    ORL_TRY(orl_atomic_begin(w->log, w->path, &w->out));
-    w->file = orl_atomic_stream(&w->out);
-    if (!w->file || fseeko(w->file, LOD_PAGES_AT, SEEK_SET) != 0)
+    ORL_TRY(orl_atomic_open(w->log, w->path, &w->out));
+    if (fseeko(w->out.stream, LOD_PAGES_AT, SEEK_SET) != 0)
         return orl_fail(w->log, ORL_ERR_IO, "%s: %s", w->path, strerror(errno));
-    return orl_lod_levels_begin(w->log, w->path, w->file, &w->levels);
+    return orl_lod_levels_begin(w->log, w->path, w->out.stream, &w->levels);
 }
 
 static void finish(struct writer *w)
 {
     orl_lod_levels_destroy(&w->levels);
-    if (w->file)
-        fclose(w->file);
     orl_atomic_abort(&w->out);
     orl_point_parts_finish(&w->parts);
     orl_disc_sizes_finish(&w->sizes);

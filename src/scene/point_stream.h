@@ -28,7 +28,6 @@ struct orl_point_writer {
     const struct orl_log *log;
     const char *path;
     struct orl_atomic_file file;
-    FILE *stream;
     uint64_t left; // points that are still to come
     bool small;
     const double *origin; // added to positions, which become doubles; NULL: floats as they are

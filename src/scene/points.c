@@ -94,17 +94,17 @@ static size_t pack_point(const struct orl_points *points, size_t i, bool small,
     return at;
 }
 
-static bool write_header(FILE *stream, uint64_t count, bool small, bool far)
+static void write_header(FILE *stream, uint64_t count, bool small, bool far)
 {
     const char *normal = small ? "char" : "float", *position = far ? "double" : "float";
-    return fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
-                           "element vertex %llu\n"
-                           "property %s x\nproperty %s y\nproperty %s z\n"
-                           "property %s nx\nproperty %s ny\nproperty %s nz\n"
-                           "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                           "property float radius\n%send_header\n",
-                   (unsigned long long)count, position, position, position, normal, normal, normal,
-                   small ? "" : "property uchar photographs\n") > 0;
+    fprintf(stream, "ply\nformat binary_little_endian 1.0\n"
+                    "element vertex %llu\n"
+                    "property %s x\nproperty %s y\nproperty %s z\n"
+                    "property %s nx\nproperty %s ny\nproperty %s nz\n"
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                    "property float radius\n%send_header\n",
+            (unsigned long long)count, position, position, position, normal, normal, normal,
+            small ? "" : "property uchar photographs\n");
 }
 
 static enum orl_result begin(const struct orl_log *log, const char *path, uint64_t count, bool small,
@@ -112,11 +112,9 @@ static enum orl_result begin(const struct orl_log *log, const char *path, uint64
 {
     *writer = (struct orl_point_writer){.log = log, .path = path, .left = count, .small = small,
                                         .origin = origin};
-    ORL_TRY(orl_atomic_begin(log, path, &writer->file));
-    writer->stream = orl_atomic_stream(&writer->file);
-    return writer->stream && write_header(writer->stream, count, small, origin)
-               ? ORL_OK
-               : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    ORL_TRY(orl_atomic_open(log, path, &writer->file));
+    write_header(writer->file.stream, count, small, origin);
+    return ORL_OK;
 }
 
 enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
@@ -133,7 +131,7 @@ enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
     for (size_t i = 0; i < points->count; i++) {
         uint8_t record[RECORD_SIZE_MAX];
         size_t size = pack_point(points, i, writer->small, writer->origin, record);
-        if (fwrite(record, size, 1, writer->stream) != 1)
+        if (fwrite(record, size, 1, writer->file.stream) != 1)
             return orl_fail(writer->log, ORL_ERR_IO, "%s: %s", writer->path, strerror(errno));
     }
     return ORL_OK;
@@ -142,18 +140,11 @@ enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
 enum orl_result orl_point_writer_end(struct orl_point_writer *writer)
 {
     ORL_REQUIRE(writer->log, !writer->left);
-    FILE *stream = writer->stream;
-    writer->stream = NULL;
-    return fclose(stream) == 0 ? orl_atomic_commit(writer->log, &writer->file)
-                               : orl_fail(writer->log, ORL_ERR_IO, "%s: %s", writer->path,
-                                          strerror(errno));
+    return orl_atomic_commit(writer->log, &writer->file);
 }
 
 void orl_point_writer_finish(struct orl_point_writer *writer)
 {
-    if (writer->stream)
-        fclose(writer->stream);
-    writer->stream = NULL;
     orl_atomic_abort(&writer->file);
 }
 
