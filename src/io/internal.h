@@ -46,11 +46,11 @@ enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path
 enum orl_result orl_png_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                     struct orl_picture_header *header);
 
-// Decode to U8; `channels` is 1 or 3.
+// Decode to U8: RGB, or of JPEG with 1 channel the luma that it holds.
 enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                 size_t size, int channels, struct orl_image *image);
 enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, int channels, struct orl_image *image);
+                               size_t size, struct orl_image *image);
 // Decodes samples as stored: U8 x4, or F32 x4 in [0, 1] where the file has 16 bits a sample. Alpha is
 // opaque where the file has none.
 enum orl_result orl_png_decode_rgba(const struct orl_log *log, const char *path,
@@ -60,7 +60,7 @@ bool orl_pnm_is(const uint8_t *data, size_t size);
 enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                     struct orl_picture_header *header);
 enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, int channels, struct orl_image *image);
+                               size_t size, struct orl_image *image);
 // Decodes 8 or 16 bits of sRGB to linear light, F32 x3.
 // as_stored: they are only scaled to [0, 1].
 enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,

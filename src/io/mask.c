@@ -39,31 +39,20 @@ static bool alpha_varies(const struct orl_image *rgba)
     return false;
 }
 
-static void from_alpha(const struct orl_image *rgba, struct orl_image *mask)
-{
-    int greatest = 0;
-    size_t count = orl_image_bytes(mask);
-    for (size_t i = 0; i < count; i++)
-        greatest = rgba->u8[4 * i + 3] > greatest ? rgba->u8[4 * i + 3] : greatest;
-    int threshold = threshold_of(greatest);
-    for (size_t i = 0; i < count; i++)
-        mask->u8[i] = rgba->u8[4 * i + 3] >= threshold ? 255 : 0;
-}
-
-static void from_colours(const struct orl_image *rgba, struct orl_image *mask)
+// By alpha, or by the colours.
+static void mark(const struct orl_image *rgba, bool alpha, struct orl_image *mask)
 {
     int greatest = 0;
     size_t count = orl_image_bytes(mask);
     for (size_t i = 0; i < count; i++) {
-        int value = brightest_channel(rgba->u8 + 4 * i);
-        greatest = value > greatest ? value : greatest;
+        const uint8_t *pixel = rgba->u8 + 4 * i;
+        mask->u8[i] = alpha ? pixel[3] : brightest_channel(pixel);
+        greatest = mask->u8[i] > greatest ? mask->u8[i] : greatest;
     }
     int threshold = threshold_of(greatest);
     for (size_t i = 0; i < count; i++) {
-        const uint8_t *pixel = rgba->u8 + 4 * i;
-        int value = brightest_channel(pixel);
-        bool coloured = value - darkest_channel(pixel) >= COLOURED;
-        mask->u8[i] = value >= threshold || coloured ? 255 : 0;
+        bool coloured = !alpha && mask->u8[i] - darkest_channel(rgba->u8 + 4 * i) >= COLOURED;
+        mask->u8[i] = mask->u8[i] >= threshold || coloured ? 255 : 0;
     }
 }
 
@@ -76,10 +65,8 @@ static enum orl_result read_mask(const struct orl_log *log, const char *path, bo
     bool alpha = result == ORL_OK && alpha_varies(&rgba);
     if (result == ORL_OK && (alpha || !alpha_only))
         result = orl_image_init(log, mask, rgba.width, rgba.height, 1, ORL_PIXEL_U8);
-    if (result == ORL_OK && alpha)
-        from_alpha(&rgba, mask);
-    else if (result == ORL_OK && !alpha_only)
-        from_colours(&rgba, mask);
+    if (result == ORL_OK && (alpha || !alpha_only))
+        mark(&rgba, alpha, mask);
     orl_image_finish(&rgba);
     return result;
 }

@@ -299,7 +299,7 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
     if (result == ORL_OK && format == FORMAT_PNG)
         result = orl_png_decode_linear(log, path, data, size, profile != NULL, image);
     else if (result == ORL_OK && format == FORMAT_PNM)
-        result = orl_pnm_decode(log, path, data, size, 3, &eight);
+        result = orl_pnm_decode(log, path, data, size, &eight);
     else if (result == ORL_OK)
         result = orl_jpeg_decode(log, path, data, size, 3, &eight);
     if (result == ORL_OK && eight.data)
@@ -331,23 +331,29 @@ enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *p
     return result;
 }
 
-// Converts linear light to 8-bit sRGB, or to the luma of that.
+// Converts linear light to 8-bit sRGB.
 static enum orl_result encode_eight(const struct orl_log *log, const struct orl_image *linear,
-                                    int channels, struct orl_image *image)
+                                    struct orl_image *image)
 {
-    enum orl_result result = orl_image_init(log, image, linear->width, linear->height, channels,
-                                            ORL_PIXEL_U8);
-    size_t count = (size_t)linear->width * (size_t)linear->height;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        uint32_t rgb[3];
-        for (size_t c = 0; c < 3; c++)
-            rgb[c] = (uint32_t)lrintf(255 * orl_srgb_encode(linear->f32[3 * i + c]));
-        for (size_t c = 0; c < 3 && channels == 3; c++)
-            image->u8[3 * i + c] = (uint8_t)rgb[c];
-        if (channels == 1)
-            image->u8[i] = (uint8_t)((299 * rgb[0] + 587 * rgb[1] + 114 * rgb[2] + 500) / 1000);
+    ORL_TRY(orl_image_init(log, image, linear->width, linear->height, 3, ORL_PIXEL_U8));
+    for (size_t i = 0; i < orl_image_bytes(image); i++)
+        image->u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear->f32[i]));
+    return ORL_OK;
+}
+
+// Converts RGB to luma. libpng's own conversion works in linear light when the file has a gamma
+// chunk, so its result would depend on that chunk.
+static enum orl_result to_luma(const struct orl_log *log, struct orl_image *image)
+{
+    struct orl_image luma;
+    ORL_TRY(orl_image_init(log, &luma, image->width, image->height, 1, ORL_PIXEL_U8));
+    for (size_t i = 0; i < orl_image_bytes(&luma); i++) {
+        const uint8_t *p = image->u8 + 3 * i;
+        luma.u8[i] = (uint8_t)((299u * p[0] + 587u * p[1] + 114u * p[2] + 500u) / 1000u);
     }
-    return result;
+    orl_image_finish(image);
+    *image = luma;
+    return ORL_OK;
 }
 
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
@@ -374,11 +380,13 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     else if (result == ORL_OK && format == FORMAT_JPEG)
         result = orl_jpeg_decode(log, path, data, size, channels, image);
     else if (result == ORL_OK && format == FORMAT_PNG)
-        result = orl_png_decode(log, path, data, size, channels, image);
+        result = orl_png_decode(log, path, data, size, image);
     else if (result == ORL_OK)
-        result = orl_pnm_decode(log, path, data, size, channels, image);
+        result = orl_pnm_decode(log, path, data, size, image);
     if (result == ORL_OK && linear.data)
-        result = encode_eight(log, &linear, channels, image);
+        result = encode_eight(log, &linear, image);
+    if (result == ORL_OK && image->channels != channels)
+        result = to_luma(log, image);
     if (result != ORL_OK)
         orl_image_finish(image);
     orl_image_finish(&linear);

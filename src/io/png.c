@@ -241,30 +241,14 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
     return ORL_OK;
 }
 
-// Converts RGB to luma. libpng's own conversion works in linear light when the file has a gamma
-// chunk, so its result would depend on that chunk.
-static enum orl_result to_luma(const struct orl_log *log, struct orl_image *image)
-{
-    struct orl_image luma;
-    ORL_TRY(orl_image_init(log, &luma, image->width, image->height, 1, ORL_PIXEL_U8));
-    size_t count = orl_image_bytes(&luma);
-    for (size_t i = 0; i < count; i++) {
-        const uint8_t *p = image->u8 + 3 * i;
-        luma.u8[i] = (uint8_t)((299u * p[0] + 587u * p[1] + 114u * p[2] + 500u) / 1000u);
-    }
-    orl_image_finish(image);
-    *image = luma;
-    return ORL_OK;
-}
-
 enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, int channels, struct orl_image *image)
+                               size_t size, struct orl_image *image)
 {
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
     ORL_THEN(result, decode(&job, size, 3, false, image));
     end_reading(&job);
-    return result == ORL_OK && channels == 1 ? to_luma(log, image) : result;
+    return result;
 }
 
 // Converts the samples of a deep picture to floats in place, 1 at white.

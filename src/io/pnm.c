@@ -1,7 +1,6 @@
 // Netpbm's binary pictures: PBM (P4), PGM (P5) and PPM (P6) of 8 bits, the formats of silhouettes
 // and of video frames (netpbm.sourceforge.net/doc).
 #include <ctype.h>
-#include <string.h>
 
 #include "io/internal.h"
 
@@ -74,7 +73,7 @@ static uint8_t sample(const struct pnm *pnm, const uint8_t *row, size_t i)
 }
 
 enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, int channels, struct orl_image *image)
+                               size_t size, struct orl_image *image)
 {
     struct pnm pnm;
     ORL_TRY(parse_header(log, path, data, size, &pnm));
@@ -84,19 +83,12 @@ enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, cons
         return orl_fail(log, ORL_ERR_FORMAT, "%s: byte %zu: %zu bytes of samples are needed, but "
                         "only %zu follow", path, pnm.start, row_bytes * (size_t)pnm.height,
                         size - pnm.start);
-    ORL_TRY(orl_image_init(log, image, (int)pnm.width, (int)pnm.height, channels, ORL_PIXEL_U8));
+    ORL_TRY(orl_image_init(log, image, (int)pnm.width, (int)pnm.height, 3, ORL_PIXEL_U8));
     uint8_t *out = image->u8;
     for (size_t y = 0; y < pnm.height; y++) {
         const uint8_t *row = data + pnm.start + y * row_bytes;
-        for (size_t x = 0; x < pnm.width; x++, out += channels) {
-            uint8_t rgb[3];
-            for (size_t c = 0; c < 3; c++)
-                rgb[c] = sample(&pnm, row, pnm.kind == 6 ? 3 * x + c : x);
-            if (channels == 3)
-                memcpy(out, rgb, 3);
-            else
-                *out = (uint8_t)((299 * rgb[0] + 587 * rgb[1] + 114 * rgb[2] + 500) / 1000);
-        }
+        for (size_t i = 0; i < 3 * pnm.width; i++)
+            *out++ = sample(&pnm, row, pnm.kind == 6 ? i : i / 3);
     }
     return ORL_OK;
 }
