@@ -23,7 +23,7 @@ struct orl_colmap_image {
     struct orl_pose cam_from_world;
     // The sparse points that the image sees: indices into orl_colmap_model.points.
     uint32_t *points; // owned
-    size_t point_count;
+    size_t point_count, point_capacity;
 };
 
 struct orl_colmap_point {
@@ -38,11 +38,11 @@ struct orl_colmap_point {
 // ORL_WORLD_MAX, with a warning.
 struct orl_colmap_model {
     struct orl_colmap_camera *cameras;
-    size_t camera_count;
+    size_t camera_count, camera_capacity;
     struct orl_colmap_image *images;
-    size_t image_count;
+    size_t image_count, image_capacity;
     struct orl_colmap_point *points;
-    size_t point_count;
+    size_t point_count, point_capacity;
 };
 
 // Reads cameras, images and points3D from `dir`: the .bin files if they exist, else the .txt files.

@@ -43,9 +43,8 @@ static enum orl_result read_camera(struct orl_text_lines *l, struct orl_colmap_c
 
 static enum orl_result read_cameras(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
-    size_t capacity = 0;
     while (orl_text_next(l)) {
-        ORL_TRY(ORL_GROW(l->log, model->cameras, capacity, model->camera_count));
+        ORL_TRY(ORL_GROW(l->log, model->cameras, model->camera_capacity, model->camera_count));
         struct orl_colmap_camera *camera = &model->cameras[model->camera_count++];
         memset(camera, 0, sizeof *camera);
         ORL_TRY(read_camera(l, camera));
@@ -69,11 +68,10 @@ static enum orl_result read_point(struct orl_text_lines *l, struct orl_colmap_po
 
 static enum orl_result read_points(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
-    size_t capacity = 0;
     while (orl_text_next(l)) {
         if (model->point_count == UINT32_MAX)
             return orl_text_bad(l, "more than 2^32 points");
-        ORL_TRY(ORL_GROW(l->log, model->points, capacity, model->point_count));
+        ORL_TRY(ORL_GROW(l->log, model->points, model->point_capacity, model->point_count));
         struct orl_colmap_point *point = &model->points[model->point_count++];
         memset(point, 0, sizeof *point);
         ORL_TRY(read_point(l, point));
@@ -84,7 +82,6 @@ static enum orl_result read_points(struct orl_text_lines *l, struct orl_colmap_m
 static enum orl_result read_observations(struct orl_text_lines *l, const struct orl_colmap_model *model,
                                          struct orl_colmap_image *image)
 {
-    size_t capacity = 0;
     double xy[2];
     while (orl_text_numbers(l, xy, 2)) {
         double id;
@@ -94,7 +91,7 @@ static enum orl_result read_observations(struct orl_text_lines *l, const struct 
         int64_t index = whole ? orl_colmap_point_index(model, (uint64_t)id) : -1;
         if (index < 0)
             continue;
-        ORL_TRY(ORL_GROW(l->log, image->points, capacity, image->point_count));
+        ORL_TRY(ORL_GROW(l->log, image->points, image->point_capacity, image->point_count));
         image->points[image->point_count++] = (uint32_t)index;
     }
     return *l->at ? orl_text_bad(l, "not a number") : ORL_OK;
@@ -145,9 +142,8 @@ static enum orl_result read_image(struct orl_text_lines *l, const struct orl_col
 
 static enum orl_result read_images(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
-    size_t capacity = 0;
     while (orl_text_next(l)) {
-        ORL_TRY(ORL_GROW(l->log, model->images, capacity, model->image_count));
+        ORL_TRY(ORL_GROW(l->log, model->images, model->image_capacity, model->image_count));
         struct orl_colmap_image *image = &model->images[model->image_count++];
         memset(image, 0, sizeof *image);
         ORL_TRY(read_image(l, model, image));

@@ -82,15 +82,8 @@ static enum orl_result add_camera(const struct orl_log *log, const char *file, c
     size_t count = model->camera_count;
     if (count && same_camera(&model->cameras[count - 1], &known->gaps[count - 1], given))
         return ORL_OK;
-    // Files have at most some thousands of cameras, so growing by one at a time is fast enough.
-    void *cameras = realloc(model->cameras, (count + 1) * sizeof *model->cameras);
-    if (cameras)
-        model->cameras = cameras;
-    void *gaps = realloc(known->gaps, (count + 1) * sizeof *known->gaps);
-    if (gaps)
-        known->gaps = gaps;
-    if (!cameras || !gaps)
-        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its cameras", file);
+    ORL_TRY(ORL_GROW(log, model->cameras, model->camera_capacity, count));
+    ORL_TRY(ORL_GROW(log, known->gaps, known->gap_capacity, count));
     struct orl_colmap_camera *camera = &model->cameras[count];
     *camera = (struct orl_colmap_camera){.id = (uint32_t)count + 1, .model = given->model,
                                          .param_count = orl_colmap_model_params(given->model)};
@@ -150,17 +143,13 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
         return orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, problem);
     ORL_TRY(add_camera(log, file, place, given, known));
     size_t count = model->image_count;
-    void *images = realloc(model->images, (count + 1) * sizeof *model->images);
-    if (images)
-        model->images = images;
-    void *pictures = realloc(known->pictures, (count + 1) * sizeof *known->pictures);
-    if (pictures)
-        known->pictures = pictures;
+    ORL_TRY(ORL_GROW(log, model->images, model->image_capacity, count));
+    ORL_TRY(ORL_GROW(log, known->pictures, known->picture_capacity, count));
     char *path = plain_path(log, given->path), *mask = plain_path(log, given->mask);
-    if (!images || !pictures || !path || (given->mask && !mask)) {
+    if (!path || (given->mask && !mask)) {
         free(path);
         free(mask);
-        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its cameras", file);
+        return ORL_ERR_MEMORY;
     }
     model->images[count] = (struct orl_colmap_image){
         .id = (uint32_t)count + 1, .camera_id = (uint32_t)model->camera_count,
@@ -171,8 +160,7 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
 }
 
 enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
-                                    const double rgb[3], size_t *capacity,
-                                    struct orl_colmap_model *model)
+                                    const double rgb[3], struct orl_colmap_model *model)
 {
     struct orl_colmap_point point = {.id = model->point_count + 1};
     for (int k = 0; k < 3; k++) {
@@ -181,16 +169,16 @@ enum orl_result orl_known_add_point(const struct orl_log *log, const double posi
         point.position[k] = position[k];
         point.rgb[k] = (uint8_t)(rgb[k] >= 255 ? 255 : rgb[k] > 0 ? rgb[k] : 0);
     }
-    ORL_TRY(ORL_GROW(log, model->points, *capacity, model->point_count));
+    ORL_TRY(ORL_GROW(log, model->points, model->point_capacity, model->point_count));
     model->points[model->point_count++] = point;
     return ORL_OK;
 }
 
 enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
-                                   size_t *capacities, struct orl_colmap_model *model)
+                                   struct orl_colmap_model *model)
 {
     struct orl_colmap_image *seen_by = &model->images[image];
-    ORL_TRY(ORL_GROW(log, seen_by->points, capacities[image], seen_by->point_count));
+    ORL_TRY(ORL_GROW(log, seen_by->points, seen_by->point_capacity, seen_by->point_count));
     seen_by->points[seen_by->point_count++] = point;
     model->points[point].track_length++;
     return ORL_OK;
@@ -227,6 +215,30 @@ void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *ob
             orl_names_add(NULL, &unused->names, key) != ORL_OK)
             return; // the line is shorter, no more
     }
+}
+
+// Of each entry of a list, or of an object whose keys are names.
+static void look_into(struct orl_known_unused *unused, const json_t *entries)
+{
+    const char *key;
+    json_t *value;
+    for (size_t i = 0; i < json_array_size(entries); i++)
+        orl_known_look_for_unused(unused, json_array_get(entries, i));
+    json_object_foreach((json_t *)entries, key, value)
+        orl_known_look_for_unused(unused, value);
+}
+
+void orl_known_say_unused_of(const struct orl_known_source *source, const json_t *root,
+                             const char *const *used, const char *const *lists)
+{
+    struct orl_known_unused unused = {.used = used};
+    if (json_is_array(root))
+        look_into(&unused, root);
+    else
+        orl_known_look_for_unused(&unused, root);
+    for (; *lists; lists++)
+        look_into(&unused, json_object_get(root, *lists));
+    orl_known_say_unused(source, &unused);
 }
 
 void orl_known_say_unused(const struct orl_known_source *source, struct orl_known_unused *unused)

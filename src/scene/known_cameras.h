@@ -31,9 +31,10 @@ struct orl_known_cameras {
     // folders that all have in common.
     struct orl_colmap_model model;
     struct orl_known_gap *gaps; // one for each camera of the model; owned
+    size_t gap_capacity;
     // pictures[i] is that of the image with id i + 1; NULL where files name no paths; owned.
     struct orl_known_picture *pictures;
-    size_t picture_count;
+    size_t picture_count, picture_capacity;
     bool splits;       // the file states which photographs are held out
     char *points_file; // a cloud in the cameras' world, if it is there; NULL: none is stated; owned
     // The file's coordinates minus `origin` are those of the model and the room.

@@ -36,19 +36,19 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
                               const struct orl_known_camera *camera,
                               struct orl_known_cameras *known) ORL_CHECK_RESULT;
 
-// Appends a point, unless it is not finite or absurdly far. *capacity is that of model->points.
+// Appends a point, unless it is not finite or absurdly far.
 enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
-                                    const double rgb[3], size_t *capacity,
+                                    const double rgb[3],
                                     struct orl_colmap_model *model) ORL_CHECK_RESULT;
-// Notes that an image sees a point. capacities[i] is that of the list of image i.
+// Notes that an image sees a point.
 enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
-                                   size_t *capacities, struct orl_colmap_model *model) ORL_CHECK_RESULT;
+                                   struct orl_colmap_model *model) ORL_CHECK_RESULT;
 // Reads the rest of a line: the number of a point's views, then of each its camera's index, the feature's
 // index, x and y. image_of[camera]: its image, -1: none; NULL: that of the same index. Notes them unless
 // the point, at the end of the model, was left out.
 struct orl_text_lines;
 enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
-                                     const int64_t *image_of, size_t points_before, size_t *capacities,
+                                     const int64_t *image_of, size_t points_before,
                                      struct orl_colmap_model *model) ORL_CHECK_RESULT;
 // Sets the images' names from the pictures' paths.
 enum orl_result orl_known_name_images(const struct orl_log *log, const char *file,
@@ -80,6 +80,10 @@ struct orl_known_unused {
 };
 void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object);
 void orl_known_say_unused(const struct orl_known_source *source, struct orl_known_unused *unused);
+// All of it for an object and the entries of those of its lists that are named, or for a list. Both
+// `used` and `lists` end with NULL.
+void orl_known_say_unused_of(const struct orl_known_source *source, const json_t *root,
+                             const char *const *used, const char *const *lists);
 
 // The number of a key, which may be written as a string. False when it is missing or not finite.
 bool orl_known_json_number(const json_t *object, const char *key, double *value);

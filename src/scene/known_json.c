@@ -206,16 +206,13 @@ enum orl_result orl_known_read_own(const struct orl_known_source *source,
 {
     static const char *const used[] = {"pixel_centre", "room", "cameras", "name", "width", "height",
                                        "K", "R", "t", "dist", NULL};
-    struct orl_known_unused unused = {.used = used};
+    static const char *const lists[] = {"cameras", NULL};
     const json_t *list = json_object_get(source->root, "cameras");
     struct entry e;
     enum orl_result result = begin(source, 0, &e);
     ORL_THEN(result, read_list(&e, list, "name", read_own, known));
     ORL_THEN(result, orl_manifest_read_room(source->log, source->path, source->root, &known->room));
-    orl_known_look_for_unused(&unused, source->root);
-    for (size_t i = 0; i < json_array_size(list); i++)
-        orl_known_look_for_unused(&unused, json_array_get(list, i));
-    orl_known_say_unused(source, &unused);
+    orl_known_say_unused_of(source, source->root, used, lists);
     return result;
 }
 
@@ -224,13 +221,11 @@ enum orl_result orl_known_read_inria(const struct orl_known_source *source,
 {
     static const char *const used[] = {"id", "img_name", "width", "height", "position", "rotation", "fx",
                                        "fy", NULL};
-    struct orl_known_unused unused = {.used = used};
+    static const char *const lists[] = {NULL};
     struct entry e;
     enum orl_result result = begin(source, 0.5, &e);
     ORL_THEN(result, read_list(&e, source->root, "img_name", read_inria, known));
-    for (size_t i = 0; i < json_array_size(source->root); i++)
-        orl_known_look_for_unused(&unused, json_array_get(source->root, i));
-    orl_known_say_unused(source, &unused);
+    orl_known_say_unused_of(source, source->root, used, lists);
     return result;
 }
 
@@ -287,23 +282,15 @@ static enum orl_known_split split_of(const json_t *root, const char *path)
                ? ORL_KNOWN_TRAIN : ORL_KNOWN_UNUSED;
 }
 
-static void say_unused_of_frames(const struct orl_known_source *source, const json_t *frames)
+// `split`: of all frames; ORL_KNOWN_TRAIN: as the file says.
+static enum orl_result read_frames(const struct orl_known_source *source,
+                                   enum orl_known_split split, struct orl_known_cameras *known)
 {
     static const char *const used[] = {
         "frames", "file_path", "transform_matrix", "mask_path", "camera_model", "w", "h", "fl_x", "fl_y",
         "cx", "cy", "k1", "k2", "k3", "k4", "p1", "p2", "camera_angle_x", "camera_angle_y",
         "is_fisheye", "train_filenames", "val_filenames", "test_filenames", "ply_file_path", NULL};
-    struct orl_known_unused unused = {.used = used};
-    orl_known_look_for_unused(&unused, source->root);
-    for (size_t i = 0; i < json_array_size(frames); i++)
-        orl_known_look_for_unused(&unused, json_array_get(frames, i));
-    orl_known_say_unused(source, &unused);
-}
-
-// `split`: of all frames; ORL_KNOWN_TRAIN: as the file says.
-static enum orl_result read_frames(const struct orl_known_source *source,
-                                   enum orl_known_split split, struct orl_known_cameras *known)
-{
+    static const char *const lists[] = {"frames", NULL};
     const json_t *root = source->root, *frames = json_object_get(root, "frames");
     struct entry e;
     bool held_out = split != ORL_KNOWN_TRAIN, any = split == ORL_KNOWN_UNUSED || !json_array_size(frames);
@@ -326,7 +313,7 @@ static enum orl_result read_frames(const struct orl_known_source *source,
     }
     if (result != ORL_OK)
         return result;
-    say_unused_of_frames(source, frames);
+    orl_known_say_unused_of(source, root, used, lists);
     if (!held_out && json_array_size(json_object_get(root, "test_filenames")))
         orl_logf(source->log, ORL_LOG_WARNING, "%s: test_filenames has none of the frames: none is held "
                  "out", source->path);

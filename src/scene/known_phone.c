@@ -106,7 +106,7 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
                                         struct orl_known_cameras *known)
 {
     static const char *const used[] = {"poses", "K", "w", "h", "perFrameIntrinsicCoeffs", NULL};
-    struct orl_known_unused unused = {.used = used};
+    static const char *const lists[] = {NULL};
     const json_t *poses = json_object_get(source->root, "poses");
     char *rgb = orl_path_join(source->log, known->folder, "rgb");
     ORL_TRY_MEMORY(rgb);
@@ -142,7 +142,6 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
         orl_known_set_opencv(&camera, f_c, NULL, 0);
         result = orl_known_add(source->log, source->path, place, &camera, known);
     }
-    orl_known_look_for_unused(&unused, source->root);
-    orl_known_say_unused(source, &unused);
+    orl_known_say_unused_of(source, source->root, used, lists);
     return result;
 }

@@ -97,7 +97,6 @@ static enum orl_result read_shot(const struct orl_known_source *source, const js
 static enum orl_result read_opensfm_points(const struct orl_known_source *source, json_t *points,
                                            struct orl_known_cameras *known)
 {
-    size_t capacity = 0;
     const char *id;
     json_t *entry;
     enum orl_result result = ORL_OK;
@@ -106,32 +105,20 @@ static enum orl_result read_opensfm_points(const struct orl_known_source *source
         if (!orl_json_read_numbers(json_object_get(entry, "coordinates"), 3, at))
             return bad(source, "point", id, "its coordinates are not 3 numbers");
         (void)orl_json_read_numbers(json_object_get(entry, "color"), 3, rgb);
-        result = orl_known_add_point(source->log, at, rgb, &capacity, &known->model);
+        result = orl_known_add_point(source->log, at, rgb, &known->model);
         if (result != ORL_OK)
             break;
     }
     return result;
 }
 
-static void say_unused_of_opensfm(const struct orl_known_source *source, const json_t *reconstruction)
+enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
+                                       struct orl_known_cameras *known)
 {
     static const char *const used[] = {
         "cameras", "shots", "points", "projection_type", "width", "height", "focal", "focal_x", "focal_y",
         "c_x", "c_y", "k1", "k2", "k3", "k4", "p1", "p2", "camera", "rotation", "translation", NULL};
-    struct orl_known_unused unused = {.used = used};
-    orl_known_look_for_unused(&unused, reconstruction);
-    for (int i = 0; i < 2; i++) {
-        const char *key;
-        json_t *entry;
-        json_object_foreach(json_object_get(reconstruction, i ? "shots" : "cameras"), key, entry)
-            orl_known_look_for_unused(&unused, entry);
-    }
-    orl_known_say_unused(source, &unused);
-}
-
-enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
-                                       struct orl_known_cameras *known)
-{
+    static const char *const lists[] = {"cameras", "shots", NULL};
     const json_t *all = source->root, *best = json_array_get(all, 0);
     for (size_t i = 1; i < json_array_size(all); i++) {
         const json_t *other = json_array_get(all, i);
@@ -147,7 +134,7 @@ enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
     json_t *shot;
     json_object_foreach(shots, name, shot)
         ORL_TRY(read_shot(source, json_object_get(best, "cameras"), name, shot, known));
-    say_unused_of_opensfm(source, best);
+    orl_known_say_unused_of(source, best, used, lists);
     return read_opensfm_points(source, json_object_get(best, "points"), known);
 }
 
@@ -307,7 +294,6 @@ static enum orl_result read_view(struct meshroom *m, const json_t *view,
 }
 
 static enum orl_result read_landmark(const struct meshroom *m, const json_t *landmark,
-                                     size_t *capacity, size_t *capacities,
                                      struct orl_colmap_model *model)
 {
     double at[3], rgb[3] = {128, 128, 128};
@@ -316,49 +302,27 @@ static enum orl_result read_landmark(const struct meshroom *m, const json_t *lan
     if (!read_texts(json_object_get(landmark, "X"), 3, at))
         return bad(m->source, "landmark", "", "no X of 3 numbers");
     (void)read_texts(json_object_get(landmark, "color"), 3, rgb);
-    enum orl_result result = orl_known_add_point(m->source->log, at, rgb, capacity, model);
+    enum orl_result result = orl_known_add_point(m->source->log, at, rgb, model);
     for (size_t i = 0; result == ORL_OK && model->point_count > before && i < json_array_size(seen); i++) {
         char *id = id_text(m->source->log, json_array_get(seen, i), "observationId");
         const json_t *image = id ? json_object_get(m->images, id) : NULL;
         if (image)
             result = orl_known_add_view(m->source->log, (size_t)json_integer_value(image),
-                                        (uint32_t)before, capacities, model);
+                                        (uint32_t)before, model);
         free(id);
     }
     return result;
 }
 
-static enum orl_result read_structure(const struct meshroom *m, struct orl_colmap_model *model)
+enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
+                                        struct orl_known_cameras *known)
 {
-    const json_t *list = json_object_get(m->source->root, "structure");
-    size_t capacity = 0, *capacities = orl_array(m->source->log, model->image_count, sizeof *capacities);
-    enum orl_result result = capacities ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < json_array_size(list); i++)
-        result = read_landmark(m, json_array_get(list, i), &capacity, capacities, model);
-    free(capacities);
-    return result;
-}
-
-static void say_unused_of_meshroom(const struct orl_known_source *source)
-{
-    static const char *const lists[] = {"views", "intrinsics", "poses"};
     static const char *const used[] = {
         "version", "views", "intrinsics", "poses", "structure", "viewId", "poseId", "intrinsicId",
         "subPoseId", "path", "width", "height", "pose", "type", "distortionType", "distortionParams",
         "pxFocalLength", "focalLength", "sensorWidth", "pixelRatio", "principalPoint", NULL};
-    struct orl_known_unused unused = {.used = used};
-    orl_known_look_for_unused(&unused, source->root);
-    for (size_t i = 0; i < ORL_COUNT(lists); i++) {
-        const json_t *list = json_object_get(source->root, lists[i]);
-        for (size_t k = 0; k < json_array_size(list); k++)
-            orl_known_look_for_unused(&unused, json_array_get(list, k));
-    }
-    orl_known_say_unused(source, &unused);
-}
-
-enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
-                                        struct orl_known_cameras *known)
-{
+    static const char *const lists[] = {"views", "intrinsics", "poses", NULL};
+    const json_t *structure = json_object_get(source->root, "structure");
     const json_t *views = json_object_get(source->root, "views");
     struct meshroom m = {
         source, index_by(source->log, json_object_get(source->root, "intrinsics"), "intrinsicId"),
@@ -370,8 +334,9 @@ enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
         orl_logf(source->log, ORL_LOG_WARNING, "%s: %zu of %zu photographs have no pose: left out",
                  source->path, m.without, json_array_size(views));
     if (result == ORL_OK)
-        say_unused_of_meshroom(source);
-    ORL_THEN(result, read_structure(&m, &known->model));
+        orl_known_say_unused_of(source, source->root, used, lists);
+    for (size_t i = 0; result == ORL_OK && i < json_array_size(structure); i++)
+        result = read_landmark(&m, json_array_get(structure, i), &known->model);
     json_decref(m.lenses);
     json_decref(m.poses);
     json_decref(m.images);

@@ -63,15 +63,14 @@ static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fi
     return orl_known_add(l->log, l->path, place, &camera, known);
 }
 
-static enum orl_result read_nvm_point(struct orl_text_lines *l, size_t *capacity, size_t *capacities,
-                                      struct orl_colmap_model *model)
+static enum orl_result read_nvm_point(struct orl_text_lines *l, struct orl_colmap_model *model)
 {
     double at[3], rgb[3];
     size_t before = model->point_count;
     if (!orl_text_numbers(l, at, 3) || !orl_text_numbers(l, rgb, 3))
         return orl_text_bad(l, "a point needs a position and a colour");
-    ORL_TRY(orl_known_add_point(l->log, at, rgb, capacity, model));
-    return orl_known_read_views(l, model->image_count, NULL, before, capacities, model);
+    ORL_TRY(orl_known_add_point(l->log, at, rgb, model));
+    return orl_known_read_views(l, model->image_count, NULL, before, model);
 }
 
 // The first model of the file; others are of photographs that could not be placed with it.
@@ -79,7 +78,6 @@ static enum orl_result read_nvm(struct orl_text_lines *l, struct orl_known_camer
 {
     double fixed[5] = {0}; // f cx f cy r of all cameras, after "FixedK"
     uint64_t cameras = 0, points = 0;
-    size_t capacity = 0;
     if (!orl_text_next(l) || strncmp(l->at, "NVM_V3", 6) != 0)
         return orl_text_bad(l, "not NVM_V3");
     const char *lens = strstr(l->at, "FixedK");
@@ -94,15 +92,11 @@ static enum orl_result read_nvm(struct orl_text_lines *l, struct orl_known_camer
     for (uint64_t i = 0; result == ORL_OK && i < cameras; i++)
         result = orl_text_next(l) ? read_nvm_camera(l, fixed, known)
                                   : orl_text_bad(l, "fewer cameras than the file says");
-    size_t *capacities = orl_array(l->log, known->model.image_count, sizeof *capacities);
-    if (!capacities)
-        result = ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_text_next(l) && !orl_text_id(l, UINT32_MAX - 1, &points))
         result = orl_text_bad(l, "not the number of points");
     for (uint64_t i = 0; result == ORL_OK && i < points; i++)
-        result = orl_text_next(l) ? read_nvm_point(l, &capacity, capacities, &known->model)
+        result = orl_text_next(l) ? read_nvm_point(l, &known->model)
                                   : orl_text_bad(l, "fewer points than the file says");
-    free(capacities);
     return result;
 }
 

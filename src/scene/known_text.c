@@ -65,7 +65,6 @@ struct bundler {
     uint64_t camera_count, point_count;
     // Index of each camera into the model's images; -1: not registered.
     int64_t *image_of; // owned
-    size_t *capacity;  // owned; of each image's list of points
 };
 
 // Ends a line of the list after the picture's name, which may have spaces: Bundler writes " 0 FOCAL"
@@ -154,7 +153,7 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
 }
 
 enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
-                                     const int64_t *image_of, size_t points_before, size_t *capacities,
+                                     const int64_t *image_of, size_t points_before,
                                      struct orl_colmap_model *model)
 {
     uint64_t count, camera, feature;
@@ -167,28 +166,28 @@ enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_c
             return orl_text_bad(l, "a view needs a camera that is there, a feature, x and y");
         int64_t image = image_of ? image_of[camera] : (int64_t)camera;
         if (image >= 0 && model->point_count > points_before)
-            ORL_TRY(orl_known_add_view(l->log, (size_t)image, (uint32_t)points_before, capacities, model));
+            ORL_TRY(orl_known_add_view(l->log, (size_t)image, (uint32_t)points_before, model));
     }
     return ORL_OK;
 }
 
-static enum orl_result read_point(struct bundler *b, size_t *capacity, struct orl_colmap_model *model)
+static enum orl_result read_point(struct bundler *b, struct orl_colmap_model *model)
 {
     double at[3], rgb[3];
     size_t before = model->point_count;
     ORL_TRY(next_numbers(&b->l, at, 3, "a point's position needs 3 numbers"));
     ORL_TRY(next_numbers(&b->l, rgb, 3, "a point's colour needs 3 numbers"));
-    ORL_TRY(orl_known_add_point(b->l.log, at, rgb, capacity, model));
+    ORL_TRY(orl_known_add_point(b->l.log, at, rgb, model));
     if (!orl_text_next(&b->l))
         return orl_text_bad(&b->l, "a point needs the list of its views");
-    return orl_known_read_views(&b->l, b->camera_count, b->image_of, before, b->capacity, model);
+    return orl_known_read_views(&b->l, b->camera_count, b->image_of, before, model);
 }
 
 static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *known)
 {
     struct orl_text_lines *l = &b->l;
     struct orl_colmap_model *model = &known->model;
-    size_t left = (size_t)(l->end - l->next), capacity = 0;
+    size_t left = (size_t)(l->end - l->next);
     if (!orl_text_next(l) || !orl_text_id(l, 1000000, &b->camera_count) ||
         !orl_text_id(l, UINT32_MAX - 1, &b->point_count) || *l->at)
         return orl_text_bad(l, "not the numbers of cameras and points");
@@ -200,12 +199,11 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
                         "pictures", l->path, l->number, (unsigned long long)b->camera_count,
                         b->pictures.count);
     b->image_of = orl_array(l->log, b->camera_count, sizeof *b->image_of);
-    b->capacity = orl_array(l->log, b->camera_count, sizeof *b->capacity);
-    ORL_TRY_MEMORY(b->image_of && b->capacity);
+    ORL_TRY_MEMORY(b->image_of);
     for (size_t i = 0; i < b->camera_count; i++)
         ORL_TRY(read_bundler_camera(b, i, known));
     for (uint64_t i = 0; i < b->point_count; i++)
-        ORL_TRY(read_point(b, &capacity, model));
+        ORL_TRY(read_point(b, model));
     return ORL_OK;
 }
 
@@ -220,6 +218,5 @@ enum orl_result orl_known_read_bundler(const struct orl_known_source *source,
     orl_text_close(&b.l);
     orl_names_finish(&b.pictures);
     free(b.image_of);
-    free(b.capacity);
     return result;
 }
