@@ -104,37 +104,39 @@ static bool find_voxel(const struct orl_hull *cube, const float position[3], siz
 }
 
 // Marks a voxel that is inside by 2 and puts it on the stack.
-static void visit(struct orl_hull *cube, size_t index, uint32_t *stack, size_t *height)
+static void visit(uint8_t *inside, size_t index, uint32_t *stack, size_t *height)
 {
-    if (cube->inside[index] != 1)
+    if (inside[index] != 1)
         return;
-    cube->inside[index] = 2;
+    inside[index] = 2;
     stack[(*height)++] = (uint32_t)index;
 }
 
 // Keeps the parts that hold points: others were left by chance, where few silhouettes overlap.
 static enum orl_result keep_parts(const struct orl_log *log, const struct orl_points *points,
-                                  const bool *outside, struct orl_hull *cube)
+                                  struct orl_hull_points *hull)
 {
+    const struct orl_hull *cube = &hull->cube;
+    uint8_t *inside = hull->inside;
     size_t side = (size_t)cube->side, count = voxel_count(cube), height = 0, index;
     const size_t step[3] = {1, side, side * side};
     uint32_t *stack = orl_array(log, count, sizeof *stack);
     ORL_TRY_MEMORY(stack);
     for (size_t i = 0; i < points->count; i++)
-        if (!outside[i] && find_voxel(cube, points->position[i], &index))
-            visit(cube, index, stack, &height);
+        if (!hull->outside[i] && find_voxel(cube, points->position[i], &index))
+            visit(inside, index, stack, &height);
     while (height > 0) {
         index = stack[--height];
         const size_t at[3] = {index % side, index / side % side, index / (side * side)};
         for (int k = 0; k < 3; k++) {
             if (at[k] > 0)
-                visit(cube, index - step[k], stack, &height);
+                visit(inside, index - step[k], stack, &height);
             if (at[k] + 1 < side)
-                visit(cube, index + step[k], stack, &height);
+                visit(inside, index + step[k], stack, &height);
         }
     }
     for (size_t i = 0; i < count; i++)
-        cube->inside[i] = cube->inside[i] == 2;
+        inside[i] = inside[i] == 2;
     free(stack);
     return ORL_OK;
 }
@@ -191,22 +193,23 @@ enum orl_result orl_hull_points_begin(const struct orl_log *log,
     double size = ROOM * extent, voxel = VOXEL_PX * pixel_size(hull, middle);
     double most = max_bytes ? fmin(cbrt((double)max_bytes / VOXEL_BYTES), SIDE_MAX) : SIDE_MAX;
     int side = (int)fmax(fmin(ceil(size / voxel), most), SIDE_MIN);
+    hull->cube = (struct orl_hull){.side = side, .voxel = size / side};
     for (int k = 0; k < 3; k++)
-        middle[k] -= 0.5 * size;
-    result = orl_hull_init(log, &hull->cube, side, middle, size);
-    hull->through = result == ORL_OK ? orl_array(log, voxel_count(&hull->cube), 1) : NULL;
-    ORL_TRY_MEMORY(hull->through);
+        hull->cube.origin[k] = middle[k] - 0.5 * size;
+    hull->inside = orl_array(log, voxel_count(&hull->cube), 1);
+    hull->through = orl_array(log, voxel_count(&hull->cube), 1);
+    ORL_TRY_MEMORY(hull->inside && hull->through);
     for (size_t i = 0; i < voxel_count(&hull->cube); i++) {
         double centre[3];
         voxel_centre(&hull->cube, i, centre);
-        hull->cube.inside[i] = !is_outside(hull, centre);
+        hull->inside[i] = !is_outside(hull, centre);
     }
     return ORL_OK;
 }
 
 void orl_hull_points_finish(struct orl_hull_points *hull)
 {
-    orl_hull_finish(&hull->cube);
+    free(hull->inside);
     free(hull->through);
     free(hull->outside);
     *hull = (struct orl_hull_points){0};
@@ -222,7 +225,7 @@ void orl_hull_points_see(struct orl_hull_points *hull, size_t which,
     for (size_t i = 0; i < count; i++) {
         double centre[3], pixel[2], depth;
         voxel_centre(&hull->cube, i, centre);
-        if (!hull->cube.inside[i] || hull->through[i] == UINT8_MAX || excludes(s, centre) ||
+        if (!hull->inside[i] || hull->through[i] == UINT8_MAX || excludes(s, centre) ||
             !orl_view_project(&map->view, centre, pixel, &depth) ||
             !(pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < map->depth.width &&
               pixel[1] < map->depth.height))
@@ -247,14 +250,15 @@ static void smooth_line(float *at, size_t step, int side)
 }
 
 // The surface, smoothed over the steps of the voxels.
-static enum orl_result make_surface(const struct orl_log *log, const struct orl_hull *cube,
+static enum orl_result make_surface(const struct orl_log *log, const struct orl_hull_points *hull,
                                     struct orl_mesh *mesh)
 {
+    const struct orl_hull *cube = &hull->cube;
     size_t side = (size_t)cube->side, count = voxel_count(cube);
     float *field = orl_array(log, count, sizeof *field);
     ORL_TRY_MEMORY(field);
     for (size_t i = 0; i < count; i++)
-        field[i] = cube->inside[i];
+        field[i] = hull->inside[i];
     for (size_t a = 0; a < side; a++)
         for (size_t b = 0; b < side; b++) {
             smooth_line(field + side * (a + side * b), 1, cube->side);
@@ -377,13 +381,13 @@ enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_p
     if (!hull->through)
         return ORL_OK;
     for (size_t i = 0; i < voxel_count(&hull->cube); i++)
-        hull->cube.inside[i] = hull->cube.inside[i] && hull->through[i] <= wrong_allowed(hull);
-    enum orl_result result = keep_parts(log, points, hull->outside, &hull->cube);
+        hull->inside[i] = hull->inside[i] && hull->through[i] <= wrong_allowed(hull);
+    enum orl_result result = keep_parts(log, points, hull);
     for (size_t i = 0; i < voxel_count(&hull->cube); i++)
-        any = any || hull->cube.inside[i];
+        any = any || hull->inside[i];
     if (result != ORL_OK || !any)
         return result;
-    result = make_surface(log, &hull->cube, &mesh);
+    result = make_surface(log, hull, &mesh);
     ORL_THEN(result, replace_points(log, hull, &mesh, points, added));
     orl_mesh_finish(&mesh);
     return result;

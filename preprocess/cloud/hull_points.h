@@ -19,6 +19,7 @@ struct orl_hull_points {
     const struct orl_silhouette *silhouettes; // not owned
     size_t count;
     struct orl_hull cube;
+    uint8_t *inside;  // side^3: 1 where the voxel is part of the hull; owned
     uint8_t *through; // side^3: how many maps see through the voxel; owned
     bool *outside;    // of each point: too many silhouettes exclude it; owned
     double outside_share; // of the points, each counted as often as other photographs agree on it

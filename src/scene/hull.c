@@ -8,28 +8,6 @@
 #include "core/memory.h"
 #include "scene/isosurface.h"
 
-enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, int side,
-                              const double origin[3], double size)
-{
-    memset(hull, 0, sizeof *hull);
-    ORL_REQUIRE(log, side >= ORL_HULL_SIDE_MIN && side <= ORL_HULL_SIDE_MAX && size > 0);
-    size_t count = (size_t)side * (size_t)side * (size_t)side;
-    *hull = (struct orl_hull){.side = side, .voxel = size / side,
-                              .inside = orl_array(log, count, 1)};
-    ORL_TRY_MEMORY(hull->inside);
-    memcpy(hull->origin, origin, sizeof hull->origin);
-    memset(hull->inside, 1, count);
-    return ORL_OK;
-}
-
-void orl_hull_finish(struct orl_hull *hull)
-{
-    if (!hull)
-        return;
-    free(hull->inside);
-    memset(hull, 0, sizeof *hull);
-}
-
 enum orl_result orl_silhouette_is_open(const struct orl_log *log, const struct orl_image *mask,
                                        bool *open)
 {

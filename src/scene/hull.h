@@ -17,7 +17,6 @@ struct orl_silhouette {
 struct orl_hull {
     int side;
     double origin[3], voxel; // scene units
-    uint8_t *inside;         // side^3, 1: the voxel is part of the hull; owned
 };
 
 enum { ORL_HULL_SIDE_MIN = 2, ORL_HULL_SIDE_MAX = 1024 };
@@ -28,13 +27,8 @@ enum { ORL_HULL_SIDE_MIN = 2, ORL_HULL_SIDE_MAX = 1024 };
 enum orl_result orl_silhouette_is_open(const struct orl_log *log, const struct orl_image *mask,
                                        bool *open) ORL_CHECK_RESULT;
 
-// Makes a hull that fills the cube.
-enum orl_result orl_hull_init(const struct orl_log *log, struct orl_hull *hull, int side,
-                              const double origin[3], double size) ORL_CHECK_RESULT;
-void orl_hull_finish(struct orl_hull *hull);
 // Makes the surface, with normals, where a field is 0 that is negative inside: it has a value at each
-// voxel's centre of the cube, x fastest. At most about `triangles` (0: unlimited). cube->inside is not
-// read.
+// voxel's centre of the cube, x fastest. At most about `triangles` (0: unlimited).
 enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_hull *cube,
                                     const float *field, size_t triangles,
                                     struct orl_mesh *mesh) ORL_CHECK_RESULT;

@@ -7,7 +7,7 @@
 #include "scene/cones.h"
 
 struct voxels {
-    struct orl_hull cube; // side, origin, voxel; inside stays NULL
+    struct orl_hull cube;
     bool endless;         // struct orl_hull_bounds
     // At each voxel's centre, x fastest, scene units: of a hull the signed distance to the nearest
     // cone of a silhouette, negative inside; of points -voxel where there are some, else voxel.
