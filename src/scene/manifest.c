@@ -320,15 +320,13 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, b
                                   struct orl_scene *scene)
 {
     // Checking pictures takes too long here; oriel info --check does it.
-    static const char *const read_on_opening[] = {"sparse/cameras.bin", "sparse/images.bin",
-                                                  "sparse/points3D.bin", "points.ply", NULL};
-    static const char *const without_points[] = {"sparse/cameras.bin", "sparse/images.bin",
-                                                 "sparse/points3D.bin", NULL};
+    static const char *const read_on_opening[] = {"points.ply", "sparse/cameras.bin",
+                                                  "sparse/images.bin", "sparse/points3D.bin", NULL};
     size_t changed = 0;
     json_t *root;
     ORL_TRY(orl_json_read(log, path, &root));
     enum orl_result result = orl_manifest_take(log, path, root, scene);
-    ORL_THEN(result, check_files(log, scene->dir, root, points ? read_on_opening : without_points,
+    ORL_THEN(result, check_files(log, scene->dir, root, points ? read_on_opening : read_on_opening + 1,
                                  ORL_LOG_WARNING, &changed));
     json_decref(root);
     return result;

@@ -151,38 +151,6 @@ enum orl_result orl_path_through_photos(const struct orl_log *log, const struct 
 
 // --- a circle ---
 
-// The point with the least sum of squared distances from the optical axes: the solution of
-// sum(I - d d') x = sum(I - d d') c for axes from c along d. False if they are parallel.
-static bool meet_axes(const struct orl_scene *scene, double point[3])
-{
-    double a[3][4] = {{0}};
-    for (size_t n = 0; n < scene->photo_count; n++) {
-        const struct orl_pose *pose = &scene->photos[n].view.cam_from_world;
-        const double *d = pose->r[2];
-        double c[3];
-        orl_pose_centre(pose, c);
-        for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++) {
-                double m = (i == k) - d[i] * d[k];
-                a[i][k] += m;
-                a[i][3] += m * c[k];
-            }
-    }
-    double det[4]; // of the matrix, and with the right side in each column: Cramer's rule
-    for (int column = -1; column < 3; column++) {
-        double m[3][3];
-        for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++)
-                m[i][k] = a[i][k == column ? 3 : k];
-        det[column + 1] = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                          m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    }
-    for (int k = 0; k < 3; k++)
-        point[k] = det[k + 1] / det[0];
-    return det[0] > 1e-6 * pow((double)scene->photo_count, 3);
-}
-
 struct circle {
     double middle[3]; // what its cameras look at
     double up[3], ahead[3], aside[3]; // unit vectors; ahead: from the middle to the first photograph
@@ -193,9 +161,7 @@ static bool find_circle(const struct orl_scene *scene, struct circle *circle)
 {
     size_t before = 0;
     memset(circle, 0, sizeof *circle);
-    if (!meet_axes(scene, circle->middle))
-        return false;
-    if (!orl_scene_mean_up(scene, circle->up))
+    if (!orl_scene_middle(scene, circle->middle) || !orl_scene_mean_up(scene, circle->up))
         return false;
     for (size_t n = 0; n < scene->photo_count; n++) {
         const struct orl_pose *pose = &scene->photos[n].view.cam_from_world;

@@ -15,6 +15,7 @@
 #include "scene/free_space.h"
 #include "scene/point_lod.h"
 #include "scene/radius_limits.h"
+#include "scene/upright.h"
 
 // A still scene has no frames. Its `frame` may be 0 when the struct was only zeroed.
 static bool shows_time_step(const struct orl_scene *scene)
@@ -180,15 +181,9 @@ static size_t sample_distances(struct orl_scene *scene, double *values, size_t p
 // For scenes without points: distances to the place that the photographs look at.
 static size_t middle_distances(const struct orl_scene *scene, double *values)
 {
-    struct orl_ray_meeting meeting = {0};
     double eye[3], middle[3];
     size_t count = 0;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        const struct orl_pose *pose = &scene->photos[i].view.cam_from_world;
-        orl_pose_centre(pose, eye);
-        orl_ray_meeting_add(&meeting, eye, pose->r[2]);
-    }
-    if (!orl_ray_meeting_point(&meeting, middle))
+    if (!orl_scene_middle(scene, middle))
         return 0;
     for (size_t i = 0; i < scene->photo_count; i++) {
         orl_pose_centre(&scene->photos[i].view.cam_from_world, eye);

@@ -41,3 +41,15 @@ bool orl_scene_mean_up(const struct orl_scene *scene, double up[3])
     up[1] = -1;
     return false;
 }
+
+bool orl_scene_middle(const struct orl_scene *scene, double middle[3])
+{
+    struct orl_ray_meeting meeting = {0};
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_pose *pose = &scene->photos[i].view.cam_from_world;
+        double eye[3];
+        orl_pose_centre(pose, eye);
+        orl_ray_meeting_add(&meeting, eye, pose->r[2]);
+    }
+    return orl_ray_meeting_point(&meeting, middle);
+}

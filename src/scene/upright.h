@@ -1,4 +1,4 @@
-// Which way photographs, and a scene, are upright.
+// Which way photographs, and a scene, are upright, and what they look at.
 #ifndef ORL_SCENE_UPRIGHT_H
 #define ORL_SCENE_UPRIGHT_H
 
@@ -10,5 +10,7 @@ struct orl_view orl_photo_upright(const struct orl_photo *photo);
 // The mean upward direction of the upright photographs, world. False, and 0 -1 0, where they cancel
 // each other.
 bool orl_scene_mean_up(const struct orl_scene *scene, double up[3]);
+// The place nearest to the optical axes of all photographs, world. False: they are parallel.
+bool orl_scene_middle(const struct orl_scene *scene, double middle[3]);
 
 #endif
