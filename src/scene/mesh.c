@@ -10,22 +10,6 @@
 #include "core/memory.h"
 #include "scene/mesh_internal.h"
 
-enum orl_result orl_mesh_init(const struct orl_log *log, struct orl_mesh *mesh,
-                              size_t vertex_count, size_t triangle_count)
-{
-    memset(mesh, 0, sizeof *mesh);
-    ORL_REQUIRE(log, vertex_count <= UINT32_MAX);
-    mesh->position = orl_array(log, vertex_count, sizeof *mesh->position);
-    mesh->triangle = orl_array(log, triangle_count, sizeof *mesh->triangle);
-    if (!mesh->position || !mesh->triangle) {
-        orl_mesh_finish(mesh);
-        return ORL_ERR_MEMORY;
-    }
-    mesh->vertex_count = vertex_count;
-    mesh->triangle_count = triangle_count;
-    return ORL_OK;
-}
-
 void orl_mesh_finish(struct orl_mesh *mesh)
 {
     if (!mesh)

@@ -12,9 +12,6 @@ struct orl_mesh {
     uint32_t (*triangle)[3]; // vertex indices, counter-clockwise as seen from outside
 };
 
-// Allocates zeroed vertices and triangles, without normals and colours.
-enum orl_result orl_mesh_init(const struct orl_log *log, struct orl_mesh *mesh,
-                              size_t vertex_count, size_t triangle_count) ORL_CHECK_RESULT;
 void orl_mesh_finish(struct orl_mesh *mesh);
 
 // Reads PLY (ascii or binary little endian: x y z, optional nx ny nz and red green blue; faces as

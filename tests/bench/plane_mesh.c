@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "oriel/scene.h"
-#include "scene/mesh.h"
+#include "../mesh_help.h"
 
 static double median_depth(const struct orl_scene *scene, const struct orl_view *view)
 {
@@ -38,8 +38,8 @@ static enum orl_result make(const struct orl_log *log, const struct orl_scene *s
     double depth = median_depth(scene, view);
     if (!(depth > 0))
         return orl_fail(log, ORL_ERR_DATA, "%s shows no point", photo);
-    enum orl_result result = orl_mesh_init(log, mesh, 4, 2);
-    for (int i = 0; result == ORL_OK && i < 4; i++) {
+    *mesh = mesh_of(4, 2);
+    for (int i = 0; i < 4; i++) {
         // Five pictures wide and high, so that views beside it are filled too.
         double world[3], x = (i & 1 ? 3.0 : -2.0) * view->camera.width;
         double y = (i & 2 ? 3.0 : -2.0) * view->camera.height;
@@ -48,10 +48,10 @@ static enum orl_result make(const struct orl_log *log, const struct orl_scene *s
             mesh->position[i][k] = (float)world[k];
     }
     static const uint32_t triangles[2][3] = {{0, 2, 1}, {1, 2, 3}};
-    for (int i = 0; result == ORL_OK && i < 2; i++)
+    for (int i = 0; i < 2; i++)
         for (int k = 0; k < 3; k++)
             mesh->triangle[i][k] = triangles[i][k];
-    return result;
+    return ORL_OK;
 }
 
 int main(int argc, char **argv)

@@ -6,7 +6,6 @@
 
 #include "core/file.h"
 #include "fuzz.h"
-#include "../mesh_volume.h"
 #include "preprocess/calibrate/database.h"
 #include "preprocess/import/import_internal.h"
 #include "scene/info.h"
@@ -154,19 +153,6 @@ void fuzz_workspace(const uint8_t *data, size_t size)
     use_unfinished(fuzz_path("ws"));
 }
 
-// Positions and triangles alone are the same solid.
-static void use_copy(const struct orl_mesh *mesh)
-{
-    struct orl_mesh copy;
-    fuzz_require(orl_mesh_init(&fuzz_log, &copy, mesh->vertex_count, mesh->triangle_count) ==
-                     ORL_OK, "memory");
-    memcpy(copy.position, mesh->position, mesh->vertex_count * sizeof *copy.position);
-    memcpy(copy.triangle, mesh->triangle, mesh->triangle_count * sizeof *copy.triangle);
-    double volume = mesh_volume(mesh), again = mesh_volume(&copy);
-    fuzz_require(memcmp(&volume, &again, sizeof volume) == 0, "a copy has the same volume");
-    orl_mesh_finish(&copy);
-}
-
 void fuzz_mesh(const uint8_t *data, size_t size)
 {
     struct orl_mesh mesh, again;
@@ -185,7 +171,6 @@ void fuzz_mesh(const uint8_t *data, size_t size)
     fuzz_require(orl_mesh_write(&fuzz_log, fuzz_path("again"), &mesh) == ORL_OK &&
                      orl_mesh_read(&fuzz_log, fuzz_path("again"), &again) == ORL_OK &&
                      again.triangle_count == mesh.triangle_count, "a mesh can be written");
-    use_copy(&mesh);
     fuzz_require(orl_mesh_decimate(&fuzz_log, mesh.triangle_count / 2, &mesh) == ORL_OK,
                  "a mesh can be made simpler");
     orl_mesh_finish(&again);

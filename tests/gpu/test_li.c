@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "figure_scene.h"
+#include "mesh_help.h"
 #include "render/proxy/mesh_proxy.h"
 #include "render/frame/method.h"
 #include "render/hull/voxel_proxy.h"
@@ -216,7 +217,7 @@ static void what_has_no_depth_is_lit(void **state)
     struct fixture f;
     struct orl_mesh mesh;
     setup_empty(&f, 4);
-    assert_int_equal(orl_mesh_init(NULL, &mesh, 4, 2), ORL_OK);
+    mesh = mesh_of(4, 2);
     memcpy(mesh.position, strip, sizeof strip);
     memcpy(mesh.triangle, faces, sizeof faces);
     char *path = orl_path_join(NULL, f.dir, "mesh.ply");

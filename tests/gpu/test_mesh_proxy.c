@@ -2,6 +2,7 @@
 // photographs painted on them.
 #include <math.h>
 
+#include "mesh_help.h"
 #include "render/frame/method.h"
 #include "render/proxy/proxy.h"
 #include "scene/mesh.h"
@@ -20,7 +21,7 @@ static void write_mesh(const char *dir, bool colored)
     static const float small[3][3] = {{-0.2f, -0.2f, 2}, {0.2f, -0.2f, 2}, {0, 0.2f, 2}};
     static const uint32_t faces[3][3] = {{4, 5, 6}, {0, 1, 2}, {0, 2, 3}};
     struct orl_mesh mesh;
-    assert_int_equal(orl_mesh_init(NULL, &mesh, 7, 3), ORL_OK);
+    mesh = mesh_of(7, 3);
     memcpy(mesh.position, square, sizeof square);
     memcpy(mesh.position + 4, small, sizeof small);
     memcpy(mesh.triangle, faces, sizeof faces);
@@ -175,7 +176,7 @@ static void the_extent_leaves_strays_out(void **state)
     struct proxy proxy;
     const uint32_t face[3] = {0, 1, 2};
     setup_empty(&f, 4);
-    assert_int_equal(orl_mesh_init(NULL, &mesh, COUNT, 1), ORL_OK);
+    mesh = mesh_of(COUNT, 1);
     memcpy(mesh.triangle[0], face, sizeof face);
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 3; k++)

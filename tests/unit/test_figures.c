@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "datasets/figures.h"
-#include "mesh_volume.h"
+#include "mesh_help.h"
 #include "test.h"
 
 static const struct orl_figures_params small = {.cameras = 5, .frames = 1, .width = 80,

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh_volume.h"
+#include "mesh_help.h"
 #include "scene/cones.h"
 #include "test.h"
 

@@ -5,7 +5,7 @@
 
 #include "datasets/figures.h"
 #include "io/picture.h"
-#include "mesh_volume.h"
+#include "mesh_help.h"
 #include "preprocess/import.h"
 #include "preprocess/import/import_internal.h"
 #include "oriel/scene.h"

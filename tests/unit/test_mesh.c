@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "mesh_volume.h"
+#include "mesh_help.h"
 #include "scene/isosurface.h"
 #include "scene/mesh.h"
 #include "test.h"

@@ -1,7 +1,20 @@
-#ifndef ORL_TESTS_MESH_VOLUME_H
-#define ORL_TESTS_MESH_VOLUME_H
+#ifndef ORL_TESTS_MESH_HELP_H
+#define ORL_TESTS_MESH_HELP_H
+
+#include <stdlib.h>
 
 #include "scene/mesh.h"
+
+// Zeroed vertices and triangles, without normals and colours.
+static inline struct orl_mesh mesh_of(size_t vertex_count, size_t triangle_count)
+{
+    struct orl_mesh mesh = {.vertex_count = vertex_count, .triangle_count = triangle_count};
+    mesh.position = calloc(vertex_count, sizeof *mesh.position);
+    mesh.triangle = calloc(triangle_count, sizeof *mesh.triangle);
+    if (!mesh.position || !mesh.triangle)
+        abort();
+    return mesh;
+}
 
 // Volume enclosed by a closed mesh, positive when its triangles face outward.
 static inline double mesh_volume(const struct orl_mesh *mesh)
