@@ -8,7 +8,8 @@ needs_reports
 small=(--quick --size 96 --photographs 4 --quiet)
 some=(--axes photographs,points,pose,exposure,jpeg,nearer --method ulr,points,paired)
 runs 0 env LD_PRELOAD="$(dirname "$oriel")/tests/libgpu_check.so" ORIEL_GPU_CHECK=1 "$oriel" stress synth --out report "${some[@]}" "${small[@]}"
-[ -s stderr.txt ] && fail "--quiet is not quiet"
+grep -q '^checked on the device: [1-9].* 0 faults$' stderr.txt || fail "no shader was checked"
+grep -qv '^checked on the device' stderr.txt && fail "--quiet is not quiet"
 grep -q '^18 rows measured, 0 used again, 0 left out' stdout.txt || fail "no summary"
 grep -q '(jpeg)$' stdout.txt || fail "no table of an axis"
 for field in version device quick scene truth size seed methods axes title unit levels own_truth rows severity \
