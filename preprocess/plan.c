@@ -123,17 +123,11 @@ static enum orl_result read_arguments(struct planner *p)
 // parts.
 static enum orl_result read_photos(struct planner *p)
 {
-    uint8_t *data = NULL;
-    size_t size;
-    char *rest = NULL, *begun = orl_path_join(p->log, p->dir, "stereo/densify.json");
+    char *begun = orl_path_join(p->log, p->dir, "stereo/densify.json");
     char *list = orl_path_join(p->log, p->dir, "stereo/fusion.cfg");
     enum orl_result result = begun && list ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_file(begun))
-        result = orl_file_read(p->log, list, (size_t)1 << 30, &data, &size);
-    for (char *line = data ? strtok_r((char *)data, "\n", &rest) : NULL;
-         result == ORL_OK && line; line = strtok_r(NULL, "\n", &rest))
-        result = orl_names_add(p->log, &p->photos, line);
-    free(data);
+        result = orl_file_read_names(p->log, list, &p->photos);
     free(begun);
     free(list);
     return result;

@@ -129,13 +129,9 @@ enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *pa
 const struct orl_listed_exposure *orl_exposure_list_find(const struct orl_exposure_list *list,
                                                          const char *photo)
 {
-    const char *dot = strrchr(photo, '.');
-    size_t stem = dot ? (size_t)(dot - photo) : strlen(photo);
-    for (size_t i = 0; i < list->count; i++) {
-        const char *name = list->items[i].name;
-        if (strcmp(name, photo) == 0 || (strlen(name) == stem && strncmp(name, photo, stem) == 0))
+    for (size_t i = 0; i < list->count; i++)
+        if (orl_path_is_named(photo, list->items[i].name))
             return &list->items[i];
-    }
     return NULL;
 }
 

@@ -88,32 +88,15 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
     return result == ORL_OK ? lock_folder(job, empty) : result;
 }
 
-// Names, one a line.
-static enum orl_result read_names(const struct orl_job *job, const char *name,
-                                  struct orl_names *names)
-{
-    uint8_t *data = NULL;
-    size_t size;
-    char *rest = NULL, *path = orl_job_path(job, "%s", name);
-    enum orl_result result = path ? orl_file_read(job->log, path, (size_t)1 << 30, &data, &size)
-                                  : ORL_ERR_MEMORY;
-    for (char *line = data ? strtok_r((char *)data, "\n", &rest) : NULL;
-         result == ORL_OK && line; line = strtok_r(NULL, "\n", &rest))
-        result = orl_names_add(job->log, names, line);
-    free(data);
-    free(path);
-    return result;
-}
-
 // The model's images are sorted by name, as sources are.
 enum orl_result orl_job_take_sources(struct orl_job *job)
 {
     struct orl_names train = {0};
-    char *path = orl_job_path(job, "sparse");
-    enum orl_result result = path ? orl_colmap_read(job->log, path, &job->sparse.model)
-                                  : ORL_ERR_MEMORY;
+    char *path = orl_job_path(job, "sparse"), *list = orl_job_path(job, "stereo/fusion.cfg");
+    enum orl_result result = path && list ? orl_colmap_read(job->log, path, &job->sparse.model)
+                                          : ORL_ERR_MEMORY;
     job->sparse.known = result == ORL_OK;
-    ORL_THEN(result, read_names(job, "stereo/fusion.cfg", &train));
+    ORL_THEN(result, orl_file_read_names(job->log, list, &train));
     const struct orl_colmap_model *model = &job->sparse.model;
     if (result == ORL_OK)
         job->sources = orl_array(job->log, model->image_count + 1, sizeof *job->sources);
@@ -127,6 +110,7 @@ enum orl_result orl_job_take_sources(struct orl_job *job)
     }
     orl_names_finish(&train);
     free(path);
+    free(list);
     return result;
 }
 

@@ -42,12 +42,6 @@ static void keep_reason(void *priv, enum orl_log_level level, const char *messag
         snprintf(reason->text, sizeof reason->text, "%s", message);
 }
 
-static size_t stem_length(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot ? (size_t)(dot - name) : strlen(name);
-}
-
 static void skip_for(struct orl_job *job, struct orl_source *source, const struct reason *reason)
 {
     // Decoders start with the file's name, which the report has already.
@@ -85,12 +79,12 @@ static void drop_jpegs_of_raw(struct orl_job *job)
     for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
         const struct orl_source *better = NULL;
-        size_t stem = stem_length(source->given);
+        size_t stem = orl_path_stem(source->given);
         bool may_be = orl_path_has_extension(source->given, "jpg jpeg");
         for (size_t k = 0; may_be && k < job->source_count && !better; k++) {
             const struct orl_source *other = &job->sources[k];
             if (other->given && orl_develop_wanted(other->given) &&
-                stem_length(other->given) == stem &&
+                orl_path_stem(other->given) == stem &&
                 strncasecmp(other->given, source->given, stem) == 0)
                 better = other;
         }
@@ -261,13 +255,6 @@ static enum orl_result drop_doubtful(struct orl_job *job)
     return result;
 }
 
-// True when `given` is the name, with or without its extension.
-static bool same_photo(const char *name, const char *given)
-{
-    size_t stem = stem_length(name);
-    return strcmp(name, given) == 0 || (strlen(given) == stem && strncmp(name, given, stem) == 0);
-}
-
 static enum orl_result choose_test(struct orl_job *job)
 {
     const struct orl_prepare_params *params = job->params;
@@ -280,8 +267,8 @@ static enum orl_result choose_test(struct orl_job *job)
     for (size_t n = 0; n < params->test_list.count; n++) {
         bool found = false;
         for (size_t i = 0; i < job->source_count; i++)
-            if (same_photo(job->sources[i].name, params->test_list.items[n]) ||
-                same_photo(job->sources[i].given, params->test_list.items[n]))
+            if (orl_path_is_named(job->sources[i].name, params->test_list.items[n]) ||
+                orl_path_is_named(job->sources[i].given, params->test_list.items[n]))
                 found = job->sources[i].test = true;
         if (!found)
             return orl_fail(job->log, ORL_ERR_ARGUMENT,

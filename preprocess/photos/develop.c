@@ -23,8 +23,7 @@ bool orl_develop_wanted(const char *name)
 
 char *orl_develop_name(const struct orl_log *log, const char *name)
 {
-    const char *dot = strrchr(name, '.');
-    return orl_format(log, "%.*s.jpg", (int)(dot ? dot - name : (long)strlen(name)), name);
+    return orl_format(log, "%.*s.jpg", (int)orl_path_stem(name), name);
 }
 
 // --- floating point photographs: choice of white ---

@@ -16,21 +16,6 @@
     ROW(part, "part", PART, "only the K-th of N parts of one pass (oriel plan)")
 COMMAND_OPTIONS(densify_options, DENSIFY_OPTIONS)
 
-// Reads names, one a line.
-static enum orl_result read_names(const struct orl_log *log, const char *path,
-                                  struct orl_names *names)
-{
-    uint8_t *data;
-    size_t size;
-    enum orl_result result = orl_file_read(log, path, (size_t)1 << 30, &data, &size);
-    char *rest = NULL;
-    for (char *line = result == ORL_OK ? strtok_r((char *)data, "\r\n", &rest) : NULL;
-         result == ORL_OK && line; line = strtok_r(NULL, "\r\n", &rest))
-        result = orl_names_add(log, names, line);
-    free(data);
-    return result;
-}
-
 // Lists the workspace's photographs that are not excluded.
 static enum orl_result choose_photos(const struct orl_log *log, const char *workspace,
                                      const struct orl_colmap_model *model,
@@ -39,7 +24,7 @@ static enum orl_result choose_photos(const struct orl_log *log, const char *work
     const struct orl_names *exclude = &o->exclude;
     size_t excluded = 0;
     if (o->photos)
-        return read_names(log, o->photos, photos);
+        return orl_file_read_names(log, o->photos, photos);
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         if (orl_names_contain(exclude, model->images[i].name))

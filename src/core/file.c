@@ -36,6 +36,18 @@ const char *orl_path_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
+size_t orl_path_stem(const char *path)
+{
+    const char *dot = strrchr(orl_path_name(path), '.');
+    return dot ? (size_t)(dot - path) : strlen(path);
+}
+
+bool orl_path_is_named(const char *path, const char *name)
+{
+    size_t stem = orl_path_stem(path);
+    return strcmp(path, name) == 0 || (strlen(name) == stem && strncmp(path, name, stem) == 0);
+}
+
 bool orl_path_has_extension(const char *path, const char *extensions)
 {
     const char *dot = strrchr(orl_path_name(path), '.');
@@ -181,6 +193,20 @@ enum orl_result orl_dir_make(const struct orl_log *log, const char *path)
     return result;
 }
 
+enum orl_result orl_dir_make_temporary(const struct orl_log *log, const char *name, char **path)
+{
+    const char *parent = getenv("TMPDIR");
+    *path = orl_format(log, "%s/oriel-%s-XXXXXX", parent && *parent ? parent : "/tmp", name);
+    ORL_TRY_MEMORY(*path);
+    if (mkdtemp(*path))
+        return ORL_OK;
+    enum orl_result result = orl_fail(log, ORL_ERR_IO, "%s: cannot make this folder: %s", *path,
+                                      strerror(errno));
+    free(*path);
+    *path = NULL;
+    return result;
+}
+
 enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path)
 {
     const char *name = orl_path_name(path);
@@ -199,6 +225,20 @@ enum orl_result orl_file_copy(const struct orl_log *log, const char *from, const
     enum orl_result result = orl_file_read(log, from, SIZE_MAX / 2, &data, &size);
     ORL_THEN(result, orl_file_make_folder(log, to));
     ORL_THEN(result, orl_file_write(log, to, data, size));
+    free(data);
+    return result;
+}
+
+enum orl_result orl_file_read_names(const struct orl_log *log, const char *path,
+                                    struct orl_names *names)
+{
+    uint8_t *data = NULL;
+    size_t size;
+    char *rest = NULL;
+    enum orl_result result = orl_file_read(log, path, (size_t)1 << 30, &data, &size);
+    for (char *line = data ? strtok_r((char *)data, "\r\n", &rest) : NULL;
+         result == ORL_OK && line; line = strtok_r(NULL, "\r\n", &rest))
+        result = orl_names_add(log, names, line);
     free(data);
     return result;
 }

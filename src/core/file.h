@@ -13,6 +13,10 @@ char *orl_path_join(const struct orl_log *log, const char *dir, const char *name
 char *orl_path_append(const struct orl_log *log, const char *path, const char *ending);
 // The part after the last '/', pointing into `path`.
 const char *orl_path_name(const char *path);
+// Length of a path without the extension of its file.
+size_t orl_path_stem(const char *path);
+// True when `name` is the path, with or without its extension.
+bool orl_path_is_named(const char *path, const char *name);
 // True when a path ends in a dot and one of these words, which are separated by spaces. Case is ignored.
 bool orl_path_has_extension(const char *path, const char *extensions);
 bool orl_path_is_file(const char *path);
@@ -78,12 +82,19 @@ enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir) ORL_CH
 
 // Creates the folder and its parents. An existing folder is accepted and swept (orl_dir_sweep).
 enum orl_result orl_dir_make(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
+// Creates a folder for temporary files that only this user can read: oriel-NAME-XXXXXX in TMPDIR or
+// /tmp. *path is released with free().
+enum orl_result orl_dir_make_temporary(const struct orl_log *log, const char *name,
+                                       char **path) ORL_CHECK_RESULT;
 // Creates the folder that a file is in, and its parents.
 enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 // Removes the folder and everything in it; a missing folder counts as success. Links are
 // removed, never followed.
 enum orl_result orl_dir_remove(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 
+// Adds the lines of a text that are not empty.
+enum orl_result orl_file_read_names(const struct orl_log *log, const char *path,
+                                    struct orl_names *names) ORL_CHECK_RESULT;
 // Names of the folder's entries, sorted bytewise, without "." and "..".
 enum orl_result orl_dir_list(const struct orl_log *log, const char *path,
                              struct orl_names *names) ORL_CHECK_RESULT;

@@ -11,17 +11,10 @@
 #include "io/picture.h"
 #include "scene/remap.h"
 
-// Length of a name without its extension.
-static size_t stem_length(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot ? (size_t)(dot - name) : strlen(name);
-}
-
 static bool same_stem(const char *a, const char *b)
 {
-    size_t length = stem_length(a);
-    return length == stem_length(b) && strncmp(a, b, length) == 0;
+    size_t length = orl_path_stem(a);
+    return length == orl_path_stem(b) && strncmp(a, b, length) == 0;
 }
 
 static enum orl_result take_exposures(const struct orl_log *log, const char *path,
@@ -125,7 +118,7 @@ enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth
     const struct orl_photo *photo = &truth->scene->photos[index];
     struct orl_image seen = {0};
     char *path = orl_format(log, "%s/radiance/%.*s.exr", truth->dir,
-                            (int)stem_length(photo->name), photo->name);
+                            (int)orl_path_stem(photo->name), photo->name);
     enum orl_result result = path ? orl_exr_read(log, path, rgb, 3, &seen) : ORL_ERR_MEMORY;
     ORL_THEN(result, bring_to_pixels(log, truth, photo, path, &seen, radiance));
     // A photograph of exposure e shows radiance times 2^e. The scene's unit does so at its middle
@@ -146,7 +139,7 @@ enum orl_result orl_truth_vehicle(const struct orl_log *log, const struct orl_tr
     const struct orl_photo *photo = &truth->scene->photos[index];
     struct orl_image mask = {0}, seen = {0};
     char *path = orl_format(log, "%s/vehicle/%.*s.png", truth->dir,
-                            (int)stem_length(photo->name), photo->name);
+                            (int)orl_path_stem(photo->name), photo->name);
     enum orl_result result = path ? orl_picture_read(log, path, 1, &mask) : ORL_ERR_MEMORY;
     ORL_THEN(result, orl_image_init(log, &seen, mask.width, mask.height, 1, ORL_PIXEL_F32));
     for (size_t i = 0; result == ORL_OK && i < orl_image_bytes(&mask); i++)

@@ -96,9 +96,7 @@ enum orl_result orl_mask_find(const struct orl_log *log, const char *dir, const 
     static const char *const extensions[] = {"png", "PNG", "jpg", "JPG", "jpeg", "JPEG", "tif",
                                              "tiff", "pbm", "pgm", "ppm", "exr"};
     static const char *const endings[] = {"", "_mask", ".mask"};
-    const char *dot = strrchr(orl_path_name(name), '.');
-    int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
-    const int lengths[] = {(int)strlen(name), stem};
+    const int lengths[] = {(int)strlen(name), (int)orl_path_stem(name)};
     enum { TRIES = ORL_COUNT(lengths) * ORL_COUNT(endings) * ORL_COUNT(extensions) };
     *path = NULL;
     for (size_t i = 0; i < TRIES && !*path; i++) {

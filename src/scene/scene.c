@@ -470,12 +470,9 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name)
     for (size_t i = 0; i < scene->photo_count; i++)
         if (strcmp(scene->photos[i].name, name) == 0)
             return (int)i;
-    size_t length = strlen(name);
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        const char *photo = scene->photos[i].name, *dot = strrchr(photo, '.');
-        if (dot && (size_t)(dot - photo) == length && strncmp(photo, name, length) == 0)
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (orl_path_is_named(scene->photos[i].name, name))
             return (int)i;
-    }
     return -1;
 }
 

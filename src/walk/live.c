@@ -169,12 +169,10 @@ static enum orl_result add_camera(struct live *live, const char *dir, size_t pho
 {
     const struct orl_photo *p = &live->scene->photos[photo];
     struct camera *camera = &live->cameras[live->camera_count++];
-    const char *dot = strrchr(p->name, '.');
     struct orl_image picture = {0};
     char *path = orl_scene_background_path(live->log, live->scene, photo);
     *camera = (struct camera){.photo = photo};
-    camera->from = orl_format(live->log, "%s/%.*s", dir,
-                              dot ? (int)(dot - p->name) : (int)strlen(p->name), p->name);
+    camera->from = orl_format(live->log, "%s/%.*s", dir, (int)orl_path_stem(p->name), p->name);
     enum orl_result result = path && camera->from ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && (!p->masked || !orl_path_is_file(path)))
         result = orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
@@ -240,16 +238,12 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
         return ORL_ERR_MEMORY;
     *live = (struct live){.log = log, .scene = scene, .ready = -1, .taken = -1};
     pthread_mutex_init(&live->lock, NULL);
-    const char *base = getenv("TMPDIR");
     live->cameras = orl_array(log, scene->photo_count, sizeof *live->cameras);
     live->latency_ms = orl_array(log, LATENCIES, sizeof *live->latency_ms);
-    live->dir = orl_format(log, "%s/oriel-live-XXXXXX", base && *base ? base : "/tmp");
-    enum orl_result result = live->cameras && live->latency_ms && live->dir ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = live->cameras && live->latency_ms ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, add_cameras(live, dir));
-    if (result == ORL_OK && !mkdtemp(live->dir))
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", live->dir, strerror(errno));
-    else if (result == ORL_OK)
-        scene->time_steps_dir = live->dir;
+    ORL_THEN(result, orl_dir_make_temporary(log, "live", &live->dir));
+    scene->time_steps_dir = live->dir;
     ORL_THEN(result, open_cameras(live));
     if (result == ORL_OK)
         live->has_thread = pthread_create(&live->thread, NULL, watch, live) == 0;
@@ -291,11 +285,9 @@ void orl_live_stop(struct live **handle)
     }
     orl_live_pipes_stop(&live->pipes);
     orl_live_cameras_finish(&live->pictures);
-    if (live->scene->time_steps_dir) {
-        if (orl_dir_remove(live->log, live->dir) != ORL_OK)
-            orl_logf(live->log, ORL_LOG_WARNING, "%s: stays", live->dir);
-        live->scene->time_steps_dir = NULL;
-    }
+    if (live->dir && orl_dir_remove(live->log, live->dir) != ORL_OK)
+        orl_logf(live->log, ORL_LOG_WARNING, "%s: stays", live->dir);
+    live->scene->time_steps_dir = NULL;
     for (size_t i = 0; live->cameras && i < live->camera_count; i++) {
         free(live->cameras[i].from);
         free(live->cameras[i].through);

@@ -1,6 +1,5 @@
 #include "walk/site_table.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,22 +9,6 @@
 #include "walk/publish.h"
 
 static const size_t FILE_MAX = (size_t)1 << 30;
-
-// A folder that only this user can read; released with free().
-static enum orl_result make_private(const struct orl_log *log, char **dir)
-{
-    const char *parent = getenv("TMPDIR");
-    *dir = orl_path_join(log, parent && *parent ? parent : "/tmp", "oriel-walk-XXXXXX");
-    if (!*dir)
-        return ORL_ERR_MEMORY;
-    if (mkdtemp(*dir))
-        return ORL_OK;
-    enum orl_result result = orl_fail(log, ORL_ERR_IO, "%s: cannot be created: %s", *dir,
-                                      strerror(errno));
-    free(*dir);
-    *dir = NULL;
-    return result;
-}
 
 static enum orl_result add(const struct orl_log *log, const char *dir, const char *path,
                            struct site_table *table)
@@ -63,7 +46,7 @@ enum orl_result orl_site_table_make(struct orl_gpu *gpu, struct orl_scene *scene
     struct orl_publish_report report;
     char *dir = NULL, *site = NULL;
     *table = (struct site_table){0};
-    enum orl_result result = make_private(log, &dir);
+    enum orl_result result = orl_dir_make_temporary(log, "walk", &dir);
     if (result != ORL_OK)
         return result;
     site = orl_path_join(log, dir, "site");

@@ -40,6 +40,60 @@ static void paths(void **state)
     assert_false(orl_path_is_file("/nowhere/at/all"));
 }
 
+static void names_without_extension(void **state)
+{
+    (void)state;
+    assert_int_equal(orl_path_stem("a.b/c.png"), 5);
+    assert_int_equal(orl_path_stem("c.jpg.png"), 5);
+    assert_int_equal(orl_path_stem("a.b/c"), 5); // the dot is the folder's
+    assert_true(orl_path_is_named("a/c.png", "a/c.png"));
+    assert_true(orl_path_is_named("a/c.png", "a/c"));
+    assert_false(orl_path_is_named("a/c.png", "c"));
+    assert_false(orl_path_is_named("a/c.png", "a/c.jpg"));
+    assert_false(orl_path_is_named("a/cd.png", "a/c"));
+}
+
+static void lines_of_a_text(void **state)
+{
+    (void)state;
+    static const char text[] = "one\n\ntwo words\r\nthree";
+    char *path = test_path(dir, "lines");
+    struct orl_names names = {0};
+    assert_int_equal(orl_file_write(NULL, path, text, strlen(text)), ORL_OK);
+    assert_int_equal(orl_file_read_names(NULL, path, &names), ORL_OK);
+    assert_int_equal(names.count, 3);
+    assert_string_equal(names.items[0], "one");
+    assert_string_equal(names.items[1], "two words");
+    assert_string_equal(names.items[2], "three");
+    assert_int_equal(unlink(path), 0);
+    assert_int_not_equal(orl_file_read_names(NULL, path, &names), ORL_OK);
+    orl_names_finish(&names);
+    free(path);
+}
+
+static void temporary_folders(void **state)
+{
+    (void)state;
+    char *first, *second;
+    struct stat status;
+    assert_int_equal(setenv("TMPDIR", dir, 1), 0);
+    assert_int_equal(orl_dir_make_temporary(NULL, "test", &first), ORL_OK);
+    assert_int_equal(orl_dir_make_temporary(NULL, "test", &second), ORL_OK);
+    assert_string_not_equal(first, second);
+    assert_int_equal(strncmp(first, dir, strlen(dir)), 0);
+    assert_non_null(strstr(first, "/oriel-test-"));
+    assert_int_equal(stat(first, &status), 0);
+    assert_int_equal(status.st_mode & 077, 0); // no one else's
+    assert_int_equal(rmdir(first), 0);
+    assert_int_equal(rmdir(second), 0);
+    free(first);
+    free(second);
+    assert_int_equal(setenv("TMPDIR", "/nowhere/at/all", 1), 0);
+    assert_int_equal(orl_dir_make_temporary(NULL, "test", &first), ORL_ERR_IO);
+    assert_null(first);
+    assert_int_equal(unsetenv("TMPDIR"), 0);
+}
+
 static void write_and_read(void **state)
 {
     (void)state;
@@ -219,6 +273,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths),
+        cmocka_unit_test(names_without_extension),
+        cmocka_unit_test(lines_of_a_text),
+        cmocka_unit_test(temporary_folders),
         cmocka_unit_test(write_and_read),
         cmocka_unit_test(reading_refuses),
         cmocka_unit_test(a_file_beyond_memory_is_refused),
