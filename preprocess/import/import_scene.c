@@ -321,8 +321,7 @@ enum orl_result orl_import_write_manifest(const struct import_job *job, size_t p
             "stages", "checksums", sums);
         if (root)
             set_import(job, root);
-        result = root ? orl_json_write(job->log, path, root)
-                      : orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+        result = orl_json_write(job->log, path, root);
         json_decref(root);
     }
     free(path);

@@ -14,7 +14,8 @@ enum orl_result orl_json_parse(const struct orl_log *log, const char *path, cons
 enum orl_result orl_json_read(const struct orl_log *log, const char *path,
                               json_t **out) ORL_CHECK_RESULT;
 enum { ORL_JSON_DIGITS = 9 }; // of the numbers in files that are not integers
-// Writes indented JSON with keys in order of insertion. The file is written atomically.
+// Writes indented JSON with keys in order of insertion. The file is written atomically. Without a
+// value, memory has run out.
 enum orl_result orl_json_write(const struct orl_log *log, const char *path,
                                const json_t *value) ORL_CHECK_RESULT;
 

@@ -7,6 +7,7 @@
 #include "bridge/bridge.h"
 #include "io/picture.h"
 #include "core/memory.h"
+#include "render/photos/photo_loader.h"
 #include "walk/choices.h"
 #include "walk/internal.h"
 #include "walk/web_table.h"
@@ -140,9 +141,8 @@ static enum orl_result make_picture(const struct content *content, size_t number
 {
     const struct orl_log *log = content->log;
     struct orl_image image = {0}, small = {0};
-    char *path = orl_scene_photo_path(log, content->scene, content->photos[number]);
-    enum orl_result result = path ? orl_picture_read(log, path, 3, &image) : ORL_ERR_MEMORY;
-    free(path);
+    enum orl_result result =
+        orl_photo_read(log, content->scene, content->photos[number], false, &image);
     int longer = image.width > image.height ? image.width : image.height;
     bool shrinks = result == ORL_OK && longer > side;
     if (shrinks)

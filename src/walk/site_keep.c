@@ -26,7 +26,7 @@ enum orl_result orl_site_list(const struct site *site)
     json_array_append_new(list, orl_json_string(list_name));
     json_t *root = json_pack("{s:o}", "files", list);
     if (result == ORL_OK)
-        result = root ? orl_json_write(site->log, file, root) : ORL_ERR_MEMORY;
+        result = orl_json_write(site->log, file, root);
     json_decref(root);
     orl_names_finish(&paths);
     free(file);

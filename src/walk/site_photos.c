@@ -8,6 +8,7 @@
 #include "io/picture.h"
 #include "oriel/path.h"
 #include "render/photos/occluders.h"
+#include "render/photos/photo_loader.h"
 #include "walk/internal.h"
 
 enum {
@@ -66,9 +67,7 @@ static enum orl_result write_pictures(struct site *site, size_t photo,
                                       const char *thumb)
 {
     struct orl_image image = {0};
-    char *path = orl_scene_photo_path(site->log, site->scene, photo);
-    enum orl_result result = path ? orl_picture_read(site->log, path, 3, &image) : ORL_ERR_MEMORY;
-    free(path);
+    enum orl_result result = orl_photo_read(site->log, site->scene, photo, false, &image);
     ORL_THEN(result, write_smaller(site, &image, camera->width, camera->height, site->params->jpeg_quality, picture));
     if (result == ORL_OK && !*site->folder) // the list of photographs shows the first time step
         result = write_thumb(site, &image, camera, thumb);

@@ -41,13 +41,6 @@ static void finish_step(struct step *step)
     free(step->silhouettes);
 }
 
-static enum orl_result read_picture(const struct orl_log *log, char *path, struct orl_image *picture)
-{
-    enum orl_result result = path ? orl_picture_read(log, path, 3, picture) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
 static enum orl_result read_step(const struct orl_log *log, const struct orl_scene *scene, struct step *step)
 {
     *step = (struct step){.photos = orl_array(log, scene->photo_count, sizeof *step->photos),
@@ -59,7 +52,7 @@ static enum orl_result read_step(const struct orl_log *log, const struct orl_sce
         if (photo->test)
             continue;
         step->photos[step->count] = photo;
-        result = read_picture(log, orl_scene_photo_path(log, scene, i), &step->pictures[step->count++]);
+        result = orl_photo_read(log, scene, i, false, &step->pictures[step->count++]);
         if (result != ORL_OK || !photo->masked)
             continue;
         step->silhouettes[step->masks].view = photo->view;
@@ -184,11 +177,9 @@ static enum orl_result wall_of(const struct site *site, size_t photo, size_t mos
     struct orl_image picture = {0}, mask = {0};
     char *path = orl_scene_background_path(log, site->scene, photo);
     bool empty = path && orl_path_is_file(path);
-    if (!empty) {
-        free(path);
-        path = orl_scene_photo_path(log, site->scene, photo);
-    }
-    enum orl_result result = read_picture(log, path, &picture);
+    enum orl_result result = empty ? orl_picture_read(log, path, 3, &picture)
+                                   : orl_photo_read(log, site->scene, photo, false, &picture);
+    free(path);
     if (result == ORL_OK && !empty && site->scene->photos[photo].masked)
         result = orl_photo_mask_read(log, site->scene, photo, &mask);
     int step = 1 + (int)sqrt((double)c->width * c->height / (double)most);
