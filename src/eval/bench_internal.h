@@ -40,13 +40,4 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
                                 const struct orl_render_params *render,
                                 const struct orl_bench_run *run);
 
-// --- bench_trace.c ---
-
-struct bench_frame_span {
-    double start_s, end_s;
-};
-enum orl_result orl_bench_write_trace(const struct orl_log *log, const char *path,
-                                      const char *device, const struct orl_pass_trace *trace,
-                                      const struct bench_frame_span *frames, size_t frame_count);
-
 #endif

@@ -1,6 +1,8 @@
-// Measures one configuration: median times and memory.
+// Measures one configuration: median times and memory, and a trace of a few frames.
+#include <jansson.h>
 #include <stdlib.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/process.h"
 #include "eval/bench_internal.h"
@@ -102,12 +104,54 @@ enum orl_result orl_bench_measure_raster(struct bench_job *job, struct orl_bench
 
 // --- the trace ---
 
+// In the format of Chrome and Perfetto: complete events ("X") in microseconds, with one thread for the CPU
+// and one for the device.
+enum { THREAD_FRAMES = 1, THREAD_CPU, THREAD_DEVICE };
+
+static json_t *span(const char *name, int thread, double start_s, double end_s, double origin_s)
+{
+    return json_pack("{s:s, s:s, s:i, s:i, s:f, s:f}", "name", name, "ph", "X", "pid", 1, "tid",
+                     thread, "ts", 1e6 * (start_s - origin_s), "dur", 1e6 * (end_s - start_s));
+}
+
+static json_t *thread_name(int thread, const char *name)
+{
+    return json_pack("{s:s, s:s, s:i, s:i, s:{s:s}}", "name", "thread_name", "ph", "M", "pid", 1,
+                     "tid", thread, "args", "name", name);
+}
+
+static enum orl_result write_trace(const struct bench_job *job, const struct orl_pass_trace *trace,
+                                   double frames[TRACE_FRAMES][2])
+{
+    const char *path = job->params->trace;
+    double origin = frames[0][0];
+    json_t *events = json_array();
+    json_array_append_new(events, thread_name(THREAD_FRAMES, "frames"));
+    json_array_append_new(events, thread_name(THREAD_CPU, "CPU: passes asked for"));
+    json_array_append_new(events, thread_name(THREAD_DEVICE, job->bench->device));
+    for (size_t i = 0; i < TRACE_FRAMES; i++)
+        json_array_append_new(events, span("frame", THREAD_FRAMES, frames[i][0], frames[i][1], origin));
+    for (size_t i = 0; i < trace->count; i++) {
+        const struct orl_pass_span *s = &trace->spans[i];
+        json_array_append_new(events,
+                              span(s->name, THREAD_CPU, s->cpu_start_s, s->cpu_end_s, origin));
+        json_array_append_new(events,
+                              span(s->name, THREAD_DEVICE, s->gpu_start_s, s->gpu_end_s, origin));
+    }
+    if (trace->dropped)
+        orl_logf(job->log, ORL_LOG_WARNING, "%s: %zu passes left out", path, trace->dropped);
+    json_t *root = json_pack("{s:s, s:o}", "displayTimeUnit", "ms", "traceEvents", events);
+    enum orl_result result = orl_json_write(job->log, path, root);
+    json_decref(root);
+    return result;
+}
+
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
                                 const struct orl_render_params *render,
                                 const struct orl_bench_run *run)
 {
     struct run_frames traced = {job, renderer, render, NULL, run->size};
-    struct bench_frame_span frames[TRACE_FRAMES];
+    double frames[TRACE_FRAMES][2]; // start and end
     struct orl_pass_trace trace = {.capacity = TRACE_SPANS};
     trace.spans = orl_array(job->log, TRACE_SPANS, sizeof *trace.spans);
     if (!trace.spans)
@@ -116,17 +160,16 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
     orl_gpu_time_passes(job->gpu, true);
     orl_gpu_trace_passes(job->gpu, &trace);
     for (size_t i = 0; result == ORL_OK && i < TRACE_FRAMES; i++) {
-        frames[i].start_s = orl_time_s();
+        frames[i][0] = orl_time_s();
         result = orl_progress_cancelled(job->params->progress) ? ORL_ERR_CANCELLED
                                                                : draw(&traced, i);
-        frames[i].end_s = orl_time_s();
+        frames[i][1] = orl_time_s();
     }
     orl_gpu_trace_passes(job->gpu, NULL);
     orl_gpu_time_passes(job->gpu, false);
     orl_gpu_take_times(job->gpu, NULL, 0);
     if (result == ORL_OK)
-        result = orl_bench_write_trace(job->log, job->params->trace, job->bench->device, &trace,
-                                       frames, TRACE_FRAMES);
+        result = write_trace(job, &trace, frames);
     free(trace.spans);
     return result;
 }

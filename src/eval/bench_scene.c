@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "eval/bench_internal.h"
 #include "oriel/path.h"
 
@@ -38,23 +39,16 @@ struct orl_view orl_bench_view(const struct bench_job *job, size_t number, struc
 // Moves a copy of a point on the point's disc, which its copies fill evenly (Vogel's spiral).
 static void spread(struct orl_points *points, size_t i, size_t copy, size_t copies, float radius)
 {
-    const float *n = points->normal[i];
-    float axis[3] = {fabsf(n[0]) < 0.6f, fabsf(n[0]) >= 0.6f, 0}, u[3], v[3];
-    float along = axis[0] * n[0] + axis[1] * n[1], length = 0;
-    for (int k = 0; k < 3; k++) {
-        u[k] = axis[k] - along * n[k];
-        length += u[k] * u[k];
-    }
-    length = length > 0 ? sqrtf(length) : 1;
+    const float *normal = points->normal[i];
+    const double n[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+    const double axis[3] = {fabs(n[0]) < 0.6, fabs(n[0]) >= 0.6, 0};
+    double u[3], v[3], angle = 2.3999632 * (double)copy;
+    double far = 0.5 * (double)radius * sqrt(((double)copy + 0.5) / (double)copies);
+    orl_cross3(n, axis, u);
+    orl_normalize3(u);
+    orl_cross3(n, u, v);
     for (int k = 0; k < 3; k++)
-        u[k] /= length;
-    v[0] = n[1] * u[2] - n[2] * u[1];
-    v[1] = n[2] * u[0] - n[0] * u[2];
-    v[2] = n[0] * u[1] - n[1] * u[0];
-    float angle = 2.3999632f * (float)copy;
-    float far = 0.5f * radius * sqrtf(((float)copy + 0.5f) / (float)copies);
-    for (int k = 0; k < 3; k++)
-        points->position[i][k] += far * (cosf(angle) * u[k] + sinf(angle) * v[k]);
+        points->position[i][k] += (float)(far * (cos(angle) * u[k] + sin(angle) * v[k]));
 }
 
 enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_points *all,

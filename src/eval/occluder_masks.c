@@ -250,11 +250,8 @@ static void set_skip(const struct finder *f, size_t photo, const bool *removed)
     size_t count = 0;
     orl_validation_leave_out(f->scene, photo, removed, f->skip);
     for (size_t i = 0; i < f->scene->photo_count; i++) {
-        double distance, angle;
-        if (f->skip[i] || f->scene->photos[i].test)
-            continue;
-        orl_validation_apart(f->scene, photo, i, &distance, &angle);
-        f->others[count++] = (struct orl_ranked){distance + angle, i};
+        if (!f->skip[i] && !f->scene->photos[i].test)
+            f->others[count++] = (struct orl_ranked){orl_validation_apart(f->scene, photo, i), i};
     }
     qsort(f->others, count, sizeof *f->others, orl_order_ranked);
     for (size_t k = OTHERS_MAX; k < count; k++)
@@ -354,10 +351,8 @@ enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *
 {
     struct finder f = {.log = orl_gpu_log(gpu), .scene = scene, .progress = progress,
                        .masks = masks, .shares = shares};
-    size_t train = scene->photo_count - orl_heldout_count(scene);
-    if (train < ORL_VALIDATION_TRAIN_MIN)
-        return orl_fail(f.log, ORL_ERR_DATA, "%s: %zu photographs that are not held out; three are "
-                        "needed, to compare one with two others", scene->dir, train);
+    size_t train;
+    ORL_TRY(orl_validation_check(f.log, scene, &train));
     f.others = orl_array(f.log, scene->photo_count, sizeof *f.others);
     f.skip = orl_array(f.log, scene->photo_count, sizeof *f.skip);
     f.proven = orl_array(f.log, scene->photo_count, sizeof *f.proven);

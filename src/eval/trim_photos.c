@@ -11,10 +11,8 @@ static const double between_max_db = 3;
 
 static double apart(const struct trim_search *s, size_t a, size_t b)
 {
-    double distance, angle;
-    orl_validation_apart(s->source.scene, s->targets.views[a].photo, s->targets.views[b].photo,
-                         &distance, &angle);
-    return distance + angle;
+    return orl_validation_apart(s->source.scene, s->targets.views[a].photo,
+                                s->targets.views[b].photo);
 }
 
 // The targets nearest to a target whose photographs are left, the nearest first.

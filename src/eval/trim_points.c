@@ -40,14 +40,14 @@ static struct orl_view drawn_size(const struct orl_view *view)
 // The other training photograph that is most nearly there; photo_count: there is none.
 static size_t neighbour(const struct orl_scene *scene, size_t photo)
 {
-    double least = INFINITY, distance, angle;
+    double least = INFINITY;
     size_t found = scene->photo_count;
     for (size_t i = 0; i < scene->photo_count; i++) {
         if (i == photo || scene->photos[i].test)
             continue;
-        orl_validation_apart(scene, i, photo, &distance, &angle);
-        if (distance + angle < least) {
-            least = distance + angle;
+        double apart = orl_validation_apart(scene, i, photo);
+        if (apart < least) {
+            least = apart;
             found = i;
         }
     }

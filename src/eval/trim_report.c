@@ -37,8 +37,7 @@ enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
         orl_choice_settings(trim->choice.method, &trim->choice.params), "before",
         figures_json(&trim->before), "after", figures_json(&trim->after), "complete",
         trim->complete, "undone", (json_int_t)trim->undone, "steps", steps);
-    enum orl_result result = root ? orl_json_write(log, path, root)
-                                  : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    enum orl_result result = orl_json_write(log, path, root);
     json_decref(root);
     return result;
 }

@@ -40,15 +40,22 @@ static enum orl_result copy_photos(const struct orl_log *log, const struct orl_s
     return ORL_OK;
 }
 
+enum orl_result orl_validation_check(const struct orl_log *log, const struct orl_scene *scene,
+                                     size_t *train)
+{
+    *train = scene->photo_count - orl_heldout_count(scene);
+    return *train >= ORL_VALIDATION_TRAIN_MIN
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_DATA, "%s: %zu photographs that are not held out; three are "
+                          "needed, to render one from two others", scene->dir, *train);
+}
+
 enum orl_result orl_validation_load(const struct orl_log *log, const struct orl_scene *scene,
                                     size_t most, int divide, struct orl_validation *validation)
 {
-    size_t train = scene->photo_count - orl_heldout_count(scene);
+    size_t train;
     memset(validation, 0, sizeof *validation);
-    if (train < ORL_VALIDATION_TRAIN_MIN)
-        return orl_fail(log, ORL_ERR_DATA,
-                        "%s: %zu photographs that are not held out; three are needed, to render "
-                        "one from two others", scene->dir, train);
+    ORL_TRY(orl_validation_check(log, scene, &train));
     validation->views = orl_array(log, most && most < train ? most : train, sizeof *validation->views);
     validation->skip = orl_array(log, scene->photo_count, sizeof *validation->skip);
     enum orl_result result =
@@ -73,7 +80,9 @@ void orl_validation_finish(struct orl_validation *validation)
     memset(validation, 0, sizeof *validation);
 }
 
-void orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
+// The distance of two photographs' centres as a share of the distance to what they see, and the angle
+// between their directions.
+static void measure_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
                           double *angle)
 {
     const struct orl_pose *pose[] = {&scene->photos[a].view.cam_from_world,
@@ -89,10 +98,17 @@ void orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b, dou
     *angle = acos(fmin(fmax(cosine, -1), 1));
 }
 
+double orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b)
+{
+    double distance, angle;
+    measure_apart(scene, a, b, &distance, &angle);
+    return distance + angle;
+}
+
 bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b)
 {
     double distance, angle;
-    orl_validation_apart(scene, a, b, &distance, &angle);
+    measure_apart(scene, a, b, &distance, &angle);
     return distance < same_distance && angle < same_angle;
 }
 

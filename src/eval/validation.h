@@ -17,6 +17,9 @@ struct orl_validation {
     bool *skip; // owned: photographs that the current rendering does without
 };
 
+// Counts the training photographs. ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN.
+enum orl_result orl_validation_check(const struct orl_log *log, const struct orl_scene *scene,
+                                     size_t *train) ORL_CHECK_RESULT;
 // Loads at most `most` training photographs, evenly chosen (0: all), at 1/divide of their size.
 // Where the exposure of held-out photographs cannot be guessed, that of training photographs is not
 // used, either: a rendering that knows it would gain what no held-out photograph confirms.
@@ -26,9 +29,8 @@ enum orl_result orl_validation_load(const struct orl_log *log, const struct orl_
                                     struct orl_validation *validation) ORL_CHECK_RESULT;
 void orl_validation_finish(struct orl_validation *validation);
 // How far apart two photographs are: the distance of their centres as a share of the distance to
-// what they see, and the angle between their directions.
-void orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b, double *distance,
-                          double *angle);
+// what they see, and the angle between their directions, added up.
+double orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b);
 // True when photograph b stands where a stands and looks where a looks, as repeated photographs
 // and exposure series do. Rendering the view of one from the other would tell nothing.
 bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b);
