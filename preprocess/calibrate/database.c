@@ -184,20 +184,25 @@ static sqlite3_int64 pair_id(uint32_t a, uint32_t b)
     return (sqlite3_int64)INT32_MAX * (a < b ? a : b) + (a < b ? b : a);
 }
 
-enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, uint32_t b,
-                                         bool *has)
+// True if the query has a row, of this number.
+static enum orl_result ask(struct orl_database *db, const char *sql, sqlite3_int64 number, bool *any)
 {
     sqlite3_stmt *statement = NULL;
     int step = SQLITE_ERROR;
-    if (sqlite3_prepare_v2(db->handle, "SELECT 1 FROM matches WHERE pair_id = ?", -1, &statement,
-                           NULL) == SQLITE_OK) {
-        sqlite3_bind_int64(statement, 1, pair_id(a, b));
+    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK) {
+        sqlite3_bind_int64(statement, 1, number);
         step = sqlite3_step(statement);
     }
-    *has = step == SQLITE_ROW;
-    enum orl_result result = *has || step == SQLITE_DONE ? ORL_OK : fail(db);
+    *any = step == SQLITE_ROW;
+    enum orl_result result = *any || step == SQLITE_DONE ? ORL_OK : fail(db);
     sqlite3_finalize(statement);
     return result;
+}
+
+enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, uint32_t b,
+                                         bool *has)
+{
+    return ask(db, "SELECT 1 FROM matches WHERE pair_id = ?", pair_id(a, b), has);
 }
 
 enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id, bool *connected)
@@ -206,16 +211,7 @@ enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id, 
     static const char sql[] =
         "SELECT 1 FROM two_view_geometries WHERE rows >= 15 AND "
         "?1 IN (pair_id % 2147483647, (pair_id - pair_id % 2147483647) / 2147483647) LIMIT 1";
-    sqlite3_stmt *statement = NULL;
-    int step = SQLITE_ERROR;
-    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK) {
-        sqlite3_bind_int64(statement, 1, id);
-        step = sqlite3_step(statement);
-    }
-    *connected = step == SQLITE_ROW;
-    enum orl_result result = *connected || step == SQLITE_DONE ? ORL_OK : fail(db);
-    sqlite3_finalize(statement);
-    return result;
+    return ask(db, sql, id, connected);
 }
 
 enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,

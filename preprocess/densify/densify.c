@@ -82,22 +82,12 @@ static char *map_path(const struct densifier *d, const char *dir, size_t photo,
                       pass->kind);
 }
 
-// A photograph's name may contain folders.
-static enum orl_result make_folder_of(const struct densifier *d, const char *path)
-{
-    char *folder = orl_strdup(d->log, path);
-    ORL_TRY_MEMORY(folder);
-    *strrchr(folder, '/') = '\0';
-    enum orl_result result = orl_dir_make(d->log, folder);
-    free(folder);
-    return result;
-}
-
 static enum orl_result write_map(const struct densifier *d, const char *dir, size_t photo,
                                  const struct pass *pass, const struct orl_image *map)
 {
     char *path = map_path(d, dir, photo, pass);
-    enum orl_result result = path ? make_folder_of(d, path) : ORL_ERR_MEMORY;
+    // A photograph's name may contain folders.
+    enum orl_result result = path ? orl_file_make_folder(d->log, path) : ORL_ERR_MEMORY;
     ORL_THEN(result, orl_colmap_map_write(d->log, path, map));
     free(path);
     return result;
