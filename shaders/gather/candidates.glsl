@@ -1,11 +1,22 @@
 // The photographs that can paint a tile of the screen best, for the renderer and for the page. The file that
-// includes this one defines CANDIDATES, how many they are.
+// includes this one defines CANDIDATES, how many they are. RESTS: the backdrop rests in the photographs.
+#include "gather/backdrop.glsl"
 
-// Takes a sample point of the tile into account that a photograph shows. share: of it that nothing hides there.
-void candidate_sample(float share, float penalty, inout float least, inout float seen)
+// Takes a sample point p of the tile into account (z 0: no depth there; guess: 1 where it is estimated) if
+// the photograph shows it.
+void candidate_sample(photo source, vec3 p, float guess, inout float least, inout float seen)
 {
+    vec2 pixel;
+    float z;
+    bool backdrop = false;
+#ifdef RESTS
+    backdrop = guess > 0.0 && photo_backdrop(source, p, pixel);
+#endif
+    if (!(p.z > 0.0) || !(photo_project(source, p, pixel, z) || backdrop))
+        return;
+    float share = backdrop ? 1.0 : photo_unhidden_share(source, photo_depths(source, pixel), z);
     float hidden = share > 0.9 ? 1.0 : 8.0;
-    least = min(least, penalty * hidden);
+    least = min(least, photo_penalty(source, p) * hidden);
     seen += 1.0 / hidden;
 }
 

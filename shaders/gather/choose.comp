@@ -2,7 +2,6 @@
 // pixel does not grow with the number of photographs.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
-#include "gather/backdrop.glsl"
 #include "gather/candidates.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -46,18 +45,8 @@ void main()
     do { // the condition comes last: see tiled.comp
         float least = NOT_SEEN, seen = 0.0;
         photo source = photo_at(i);
-        for (int s = 0; s < ACROSS * ACROSS; s++) {
-            vec2 pixel;
-            float z;
-            bool backdrop = false;
-#ifdef RESTS
-            backdrop = guess[s] > 0.0 && photo_backdrop(source, points[s], pixel);
-#endif
-            if (!(points[s].z > 0.0) || !(photo_project(source, points[s], pixel, z) || backdrop))
-                continue;
-            float share = photo_unhidden_share(source, photo_depths(source, pixel), z);
-            candidate_sample(backdrop ? 1.0 : share, photo_penalty(source, points[s]), least, seen);
-        }
+        for (int s = 0; s < ACROSS * ACROSS; s++)
+            candidate_sample(source, points[s], guess[s], least, seen);
         candidate_insert(candidate_penalty(least, seen), i, best, index);
         i++;
     } while (i < photo_count);

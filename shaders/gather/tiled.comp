@@ -2,7 +2,6 @@
 // photograph left out, at the borders of photographs, and where the surface becomes occluded.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
-#include "gather/backdrop.glsl"
 #include "gather/blend.glsl"
 #include "gather/sample/srgb.glsl"
 #include "shared/pixel.glsl"
@@ -20,31 +19,17 @@ layout(std430, binding = 1) readonly buffer tile_lists {
 };
 #include "gather/unfinished.glsl"
 
-void consider(int i, photo source, spot s, inout ranking r)
+float surface_share(photo source, spot s, vec4 seen, float z)
 {
-    vec2 pixel;
-    float z;
-    bool inside = photo_project(source, s.p, pixel, z);
-    vec4 seen = photo_depths(source, pixel);
-    float penalty = photo_penalty(source, s.p);
-    // Estimated depth is tested even if the method has no visibility test: it is behind everything.
-    float sees = is_guess(s) ? photo_unhidden_share(source, seen, z) * photo_past_share(source, seen, z) *
-                                   photo_beside(penalty)
-                             : visible_surface(source, Point(s.p, vec3(0.0), false), seen, z);
-    penalty = is_guess(s) ? penalty : photo_surface_penalty(penalty);
-#ifdef RESTS
-    vec2 place;
-    bool backdrop = photo_backdrop(source, s.p, place) && is_guess(s);
-    inside = inside || backdrop;
-    pixel = backdrop ? place : pixel;
-    z = backdrop ? s.p.z : z;
-    sees = backdrop ? 1.0 : sees;
-    penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
-#endif
-    float sure = sees * photo_border(source, pixel);
-    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_MIN : 1e-4);
-    insert(sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z)), r);
+    return visible_surface(source, Point(s.p, vec3(0.0), false), seen, z);
 }
+
+float surface_penalty(float penalty)
+{
+    return photo_surface_penalty(penalty);
+}
+
+#include "gather/consider.glsl"
 
 // Samples with the k-th photograph of a ranking. Every one is read: see insert.
 vec4 look(ranking r, int k, spot s)
@@ -77,7 +62,7 @@ void main()
     do {
         photo source = photo_at(max(i, 0));
         for (int k = 0; k < 4; k++)
-            consider(i, source, spots[k], rankings[k]);
+            insert(consider(i, source, spots[k]), rankings[k]);
         c++;
         i = c < asked ? chosen[list + c] : -1;
         // The loop ends when each pixel has its photographs and the penalty of the first one left out.

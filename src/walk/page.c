@@ -12,8 +12,9 @@
 
 static const char index_name[] = "index.html";
 static const char *const shared_shaders[] = {
-    "gather/bicubic.glsl", "gather/blend.glsl", "gather/candidates.glsl", "gather/guess_blur.glsl",
-    "gather/hidden.glsl", "gather/penalty.glsl", "gather/projection.glsl", "gather/sample/srgb.glsl",
+    "gather/backdrop.glsl", "gather/bicubic.glsl", "gather/blend.glsl", "gather/candidates.glsl",
+    "gather/consider.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl",
+    "gather/projection.glsl", "gather/sample/srgb.glsl",
     "proxy/octahedron.glsl", "proxy/push.glsl", "proxy/surfel.glsl", "shared/penalty.h",
     "shared/pixel.glsl", "shared/srgb.glsl", NULL};
 static const size_t FILE_MAX = (size_t)1 << 30;

@@ -100,11 +100,12 @@ json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,
                           size_t start)
 {
-    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:f, s:o, s:I, s:O, s:I}", "format", "oriel site",
+    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:f, s:o, s:o, s:I, s:O, s:I}", "format", "oriel site",
                      "version", 1, "made_by", "oriel " ORL_VERSION, "title", title, "up",
                      up_json(scene), "distance",
                      scene->photo_distance > 0 ? scene->photo_distance : 1.0, "near",
-                     scene->near_distance, "ground", orl_manifest_ground(&scene->ground), "start",
+                     scene->near_distance, "ground", orl_manifest_ground(&scene->ground), "backdrop",
+                     orl_manifest_backdrop(scene->backdrop_rests), "start",
                      number_of(scene, start), "walk", settings, "time_steps",
                      (json_int_t)scene->frame_count);
 }

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -104,6 +105,29 @@ class Page(unittest.TestCase):
             self.browser.capture(page, camera)
             run(ORIEL, "render", SCENE, "--at", name, "--out", own, "--quiet")
             self.assertGreaterEqual(psnr(page, own), 32, name)
+
+    def test_a_backdrop_rests_as_in_the_renderer(self):
+        camera = next(c for c in self.cameras if c["test"])
+        scene, site = self.file("rests"), f"{os.path.dirname(SITE)}/rests"
+        shutil.copytree(SCENE, scene)
+        shutil.copytree(SITE, site)
+        for file in f"{scene}/scene.json", f"{site}/manifest.json":
+            with open(file) as opened:
+                content = json.load(opened)
+            content["backdrop"] = "rests"
+            with open(file, "w") as opened:
+                json.dump(content, opened)
+        moves, rests, own = self.file("moves.png"), self.file("rests.png"), self.file("own-rests.png")
+        self.browser.capture(moves, camera)
+        try:
+            self.reopen(self.address.replace(self.path, os.path.relpath(site, os.path.dirname(os.path.dirname(SITE)))))
+            self.browser.capture(rests, camera)
+        finally:
+            self.reopen(self.address)
+            shutil.rmtree(site)
+        run(ORIEL, "render", scene, "--at", camera["name"], "--out", own, "--quiet")
+        self.assertGreaterEqual(psnr(rests, own), 32)
+        self.assertGreaterEqual(psnr(rests, own), psnr(moves, own) + 3)
 
     def test_the_window_shows_the_picture(self):
         window, picture = self.file("window.png"), self.file("picture.png")

@@ -13,13 +13,15 @@ export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points
 export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
 const POINTS_LAYER = LAYERS.indexOf("points");
 
-function makePrograms(device, sources)
+// rests: whether the backdrop stays where it is in the photographs, as behind a turntable
+function makePrograms(device, sources, rests)
 {
     const screen = (file, defines) => device.program(sources, "screen.vert", file, defines);
     const late = (file, defines) => { // the first picture does without
         let made = null;
         return () => made ||= screen(file, defines);
     };
+    const asks = {TILE, ...(rests && {RESTS: 1})};
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
@@ -28,10 +30,10 @@ function makePrograms(device, sources)
         support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"), fillDepth: screen("fill_depth.frag"),
         depthUnpack: screen("depth_unpack.frag"),
-        choose: screen("choose.frag", {TILE}), gather: screen("gather.frag", {TILE}),
+        choose: screen("choose.frag", asks), gather: screen("gather.frag", asks),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: late("show.frag"), radianceUnpack: late("radiance_unpack.frag"),
-        gatherSharp: late("gather.frag", {TILE, BICUBIC: 1}),
+        gatherSharp: late("gather.frag", {...asks, BICUBIC: 1}),
     };
 }
 
@@ -97,7 +99,7 @@ export class Renderer {
         this.device = device;
         this.manifest = manifest;
         this.clouds = [cloud]; // and what moves, where something does
-        this.programs = makePrograms(device, sources);
+        this.programs = makePrograms(device, sources, manifest.backdrop === "rests");
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
                                      manifest.radiance);
         this.frame = null;

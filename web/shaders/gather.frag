@@ -15,23 +15,17 @@ uniform float away; // 1, but less near the place of a photograph that shows wha
 layout(location = 0) out vec4 painted; // shared/pixel.glsl, finished
 layout(location = 1) out vec4 source; // r, g: number of the best photograph, high and low byte; a: 1
 
-sight consider(int i, vec3 p, bool guessed)
+float surface_share(photo source, spot s, vec4 seen, float z)
 {
-    photo source = photo_at(i);
-    vec2 pixel;
-    float z;
-    if (!photo_project(source, p, pixel, z))
-        return sight(NOT_SEEN, i, vec2(0.0), 0.0);
-    vec4 seen = photo_depths(source, pixel);
-    float penalty = photo_penalty(source, p);
-    float sees = guessed ? photo_unhidden_share(source, seen, z) *
-                             photo_past_share(source, seen, z) * photo_beside(penalty)
-                       : photo_seen_share(seen, z);
-    penalty = guessed ? penalty : length(vec2(penalty, SURFACE_PENALTY * away));
-    float sure = sees * photo_border(source, pixel);
-    bool paints = sees > (guessed ? GUESS_SURE_MIN : 1e-4);
-    return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, p.z));
+    return photo_seen_share(seen, z);
 }
+
+float surface_penalty(float penalty)
+{
+    return length(vec2(penalty, SURFACE_PENALTY * away));
+}
+
+#include "gather/consider.glsl"
 
 void main()
 {
@@ -51,7 +45,7 @@ void main()
         int i = photo_listed(list, c);
         if (i < 0)
             break;
-        insert(consider(i, s.p, guessed), r);
+        insert(consider(i, photo_at(i), s), r);
     }
     for (int k = 1; k < KEPT; k++)
         r.next = photos_per_pixel == float(k) ? r.best[k].penalty : r.next;

@@ -1,0 +1,35 @@
+// How well a photograph can paint a surface point, for the painter `tiled` and for the page. The file that
+// includes this one defines
+//   float surface_share(photo source, spot s, vec4 seen, float z): what the photograph sees of a point on
+//       a known surface;
+//   float surface_penalty(float penalty): the penalty of such a point.
+// RESTS: the backdrop rests in the photographs.
+#include "gather/backdrop.glsl"
+
+// source: photograph i; i < 0: there is none. A photograph that cannot paint the point has the penalty
+// NOT_SEEN.
+sight consider(int i, photo source, spot s)
+{
+    vec2 pixel;
+    float z;
+    bool inside = photo_project(source, s.p, pixel, z);
+    vec4 seen = photo_depths(source, pixel);
+    float penalty = photo_penalty(source, s.p);
+    // Estimated depth is tested even if the method has no visibility test: it is behind everything.
+    float sees = is_guess(s) ? photo_unhidden_share(source, seen, z) * photo_past_share(source, seen, z) *
+                                   photo_beside(penalty)
+                             : surface_share(source, s, seen, z);
+    penalty = is_guess(s) ? penalty : surface_penalty(penalty);
+#ifdef RESTS
+    vec2 place;
+    bool backdrop = photo_backdrop(source, s.p, place) && is_guess(s);
+    inside = inside || backdrop;
+    pixel = backdrop ? place : pixel;
+    z = backdrop ? s.p.z : z;
+    sees = backdrop ? 1.0 : sees;
+    penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
+#endif
+    float sure = sees * photo_border(source, pixel);
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_MIN : 1e-4);
+    return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z));
+}
