@@ -15,7 +15,7 @@
         "everything in one HTML file SITE, which also opens from disk") \
     ROW(photo_side, "max-size", INT(1024, 64, 8192, "PX"), \
         "longer side of photographs at most") \
-    ROW(jpeg_quality, "quality", INT(88, 1, 100, "N"), "of JPEG") \
+    ROW(jpeg_quality, "quality", INT(95, 1, 100, "N"), "of JPEG") \
     ROW(max_points, "max-points", INT(3000000, 1, 100000000, "N"), \
         "the cloud is thinned to so many")
 struct orl_publish_params {
