@@ -1,9 +1,7 @@
 // All methods: one row each. What the names in a row stand for is in the tables below them.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
 #include "core/memory.h"
 #include "render/frame/method.h"
 #include "render/hull/voxel_proxy.h"
@@ -97,11 +95,6 @@ const void *orl_slot_at(const char *key, size_t index)
     return NULL;
 }
 
-const char *orl_slot_name(const void *slot)
-{
-    return *(const char *const *)slot;
-}
-
 // --- methods by name ---
 
 const struct orl_method *orl_method_find(const struct orl_log *log, const char *name)
@@ -120,147 +113,4 @@ const struct orl_method *orl_method_find(const struct orl_log *log, const char *
 const char *orl_method_default(const struct orl_scene *scene)
 {
     return scene && scene->defaults.method ? scene->defaults.method : orl_methods[0].name;
-}
-
-static bool guesses(const struct orl_render_params *params)
-{
-    return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
-}
-
-enum orl_result orl_render_params_check(const struct orl_log *log,
-                                        const struct orl_render_params *params)
-{
-    const struct orl_painter *painter = params->paint;
-    char needed[2 * ORL_OPTION_NAME_BYTES];
-    for (const char *list = painter->needs; *list; list += *list == ' ') {
-        size_t length = strcspn(list, " ");
-        snprintf(needed, sizeof needed, "%.*s", (int)length, list);
-        if (!orl_render_params_equal(params, needed))
-            return orl_fail(log, ORL_ERR_ARGUMENT, "paint=%s goes with %s alone", painter->name,
-                            needed);
-        list += length;
-    }
-    if (painter == &orl_paint_points && !params->proxy->color)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "paint=points: proxy=%s has no colours",
-                        params->proxy->name);
-    if (guesses(params) &&
-        (strcmp(params->weight, "normal") == 0 || strcmp(params->weight, "princ") == 0))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "fill=depth and fill=ground do not go with weight=%s, "
-                        "which needs a normal: guessed depth has none", params->weight);
-    if (painter == &orl_paint_gather && params->combine->sweeps == 0)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "combine=%s goes with paint=tiled alone",
-                        params->combine->name);
-    return ORL_OK;
-}
-
-static bool has_silhouettes(const struct orl_scene *scene)
-{
-    for (size_t i = 0; i < scene->photo_count; i++)
-        if (scene->photos[i].masked && !scene->photos[i].test)
-            return true;
-    return false;
-}
-
-static bool has_mesh(const struct orl_scene *scene)
-{
-    char *path = orl_scene_mesh_path(NULL, scene);
-    bool there = path && orl_path_is_file(path);
-    free(path);
-    return there;
-}
-
-// Takes another proxy where the scene lacks what the method's own is made of.
-static void suit_scene(const struct orl_scene *scene, struct orl_render_params *params)
-{
-    const struct orl_proxy_kind *kind = params->proxy;
-    // Silhouettes leave no points, but a mesh of their hull or the hull itself.
-    if (kind == &orl_proxy_splats && !scene->points.count && params->paint != &orl_paint_points)
-        params->proxy =
-            !has_mesh(scene) && has_silhouettes(scene) ? &orl_proxy_hull : &orl_proxy_mesh;
-    if (kind == &orl_proxy_hull && !has_silhouettes(scene))
-        params->proxy =
-            has_mesh(scene) || !scene->points.count ? &orl_proxy_mesh : &orl_proxy_splats;
-    // Voxels of points have holes where a hull has none.
-    if (kind == &orl_proxy_voxels && !has_silhouettes(scene))
-        params->fill = ORL_FILL_COLOR;
-}
-
-static void copy_option(const struct orl_render_option *option, const struct orl_render_params *from,
-                        struct orl_render_params *to)
-{
-    size_t size = option->kind == ORL_OPTION_FILE     ? (size_t)ORL_OPTION_NAME_BYTES
-                  : option->kind == ORL_OPTION_SLOT   ? sizeof(void *)
-                  : option->kind == ORL_OPTION_NUMBER ? sizeof(float)
-                                                      : sizeof(int);
-    memcpy((char *)to + option->offset, (const char *)from + option->offset, size);
-}
-
-bool orl_render_params_take_proxy(const struct orl_render_params *from,
-                                  struct orl_render_params *params)
-{
-    const struct orl_proxy_kind *kind = from->proxy;
-    if (params->paint != &orl_paint_gather)
-        return false;
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
-        if (strcmp(o->key, "proxy") == 0 || orl_proxy_reads(o, kind))
-            copy_option(o, from, params);
-    enum orl_fill own = params->fill;
-    params->fill = from->fill;
-    if (orl_render_params_check(NULL, params) != ORL_OK)
-        params->fill = own;
-    return true;
-}
-
-static bool has_tuned(const struct orl_scene *scene, const struct orl_method *method)
-{
-    for (size_t i = 0; i < scene->tuned_count; i++)
-        if (strcmp(scene->tuned[i].method, method->name) == 0)
-            return true;
-    return false;
-}
-
-// The method whose values in scene.json this one takes.
-static const struct orl_method *tuned_method(const struct orl_scene *scene,
-                                             const struct orl_method *method)
-{
-    return !method->variant_of || has_tuned(scene, method)
-               ? method
-               : orl_method_find(NULL, method->variant_of);
-}
-
-// True if a method has another value for the option than the method that it is a variant of.
-static bool differs(const char *key, const struct orl_method *a, const struct orl_method *b)
-{
-    char own[ORL_OPTION_NAME_BYTES], other[ORL_OPTION_NAME_BYTES];
-    const struct orl_render_option *option = orl_render_option_find(key);
-    if (!option)
-        return false; // which setting it reports
-    orl_render_option_print(option, &a->params, own, sizeof own);
-    orl_render_option_print(option, &b->params, other, sizeof other);
-    return strcmp(own, other) != 0;
-}
-
-void orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,
-                             const struct orl_scene *scene, struct orl_render_params *params)
-{
-    const struct orl_method *source = tuned_method(scene, method);
-    char ignored[256] = "";
-    *params = method->params;
-    suit_scene(scene, params);
-    for (size_t i = 0; i < scene->tuned_count; i++) {
-        const struct orl_tuned *tuned = &scene->tuned[i];
-        char assignment[160];
-        if (strcmp(tuned->method, source->name) != 0 || differs(tuned->key, method, source))
-            continue;
-        if (tuned->name)
-            snprintf(assignment, sizeof assignment, "%s=%s", tuned->key, tuned->name);
-        else
-            snprintf(assignment, sizeof assignment, "%s=%.9g", tuned->key, tuned->value);
-        size_t used = strlen(ignored);
-        if (orl_render_params_set(NULL, params, assignment) != ORL_OK)
-            snprintf(ignored + used, sizeof ignored - used, " %s", assignment);
-    }
-    if (*ignored)
-        orl_logf(log, ORL_LOG_WARNING, "%s/scene.json: \"tuned\" of %s: ignored, since this program does not take "
-                 "it:%s", scene->dir, source->name, ignored);
 }

@@ -51,7 +51,7 @@ readers=(
     "database preprocess/calibrate/database.c"
     "walk_message src/walk/choices.c src/walk/content.c src/walk/rendering.c"
     "walk_settings src/walk/settings.c"
-    "options src/render/frame/options.c"
+    "options src/render/params.c"
     "shader src/gpu/shader_source.c"
 )
 wanted=" ${*:-} "

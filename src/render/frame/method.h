@@ -34,10 +34,13 @@ struct orl_painter {
     enum orl_result (*paint)(struct frame *frame);
 };
 
-// The `index`-th implementation of the slot `key`; NULL past the last, or if it is not a slot.
+// The `index`-th implementation of the slot `key` (methods.c); NULL past the last, or if it is not a
+// slot.
 const void *orl_slot_at(const char *key, size_t index);
 // The name of such an implementation, its first member.
 const char *orl_slot_name(const void *slot);
+// The `index`-th word of a list that is separated by spaces; false past the last.
+bool orl_option_word(const char *list, size_t index, char word[ORL_OPTION_NAME_BYTES]);
 // True if "key=name" holds for `sample` or for an option that is read.
 bool orl_render_params_equal(const struct orl_render_params *params, const char *condition);
 

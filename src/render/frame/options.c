@@ -1,14 +1,11 @@
-// The table of options, and the parsing of parameters from text.
-#include <math.h>
+// The table of options, and what the values of parameters are called.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/frame/method.h"
 #include "shared/render_blocks.h"
 
 #define FIELD(name) offsetof(struct orl_render_params, name)
-#define TRIES_OF(...) __VA_ARGS__
 #define COUNT_TRIES(...) (sizeof (double[])__VA_ARGS__ / sizeof(double))
 #define SLOT_ROW(field, type, preset, read_by, text) \
     {.key = #field, .kind = ORL_OPTION_SLOT, .offset = FIELD(field), .readers = read_by, \
@@ -40,8 +37,7 @@ const struct orl_render_option *orl_render_option_find(const char *key)
 
 // --- names ---
 
-// The `index`-th word of a list that is separated by spaces.
-static bool word_at(const char *list, size_t index, char word[ORL_OPTION_NAME_BYTES])
+bool orl_option_word(const char *list, size_t index, char word[ORL_OPTION_NAME_BYTES])
 {
     for (; *list; list += *list == ' ') {
         size_t length = strcspn(list, " ");
@@ -54,36 +50,9 @@ static bool word_at(const char *list, size_t index, char word[ORL_OPTION_NAME_BY
     return false;
 }
 
-// Name of the `index`-th shader file of a slot, without folder and extension; false past the last.
-static bool file_at(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES])
+const char *orl_slot_name(const void *slot)
 {
-    char folder[64];
-    snprintf(folder, sizeof folder, "gather/%s", key);
-    const char *file = orl_shader_file(folder, index);
-    if (!file)
-        return false;
-    file += strlen(folder) + 1;
-    memset(name, 0, ORL_OPTION_NAME_BYTES);
-    snprintf(name, ORL_OPTION_NAME_BYTES, "%.*s", (int)strcspn(file, "."), file);
-    return true;
-}
-
-bool orl_render_option_name(const struct orl_render_option *option, size_t index,
-                            char name[ORL_OPTION_NAME_BYTES])
-{
-    const void *found;
-    switch (option->kind) {
-    case ORL_OPTION_CHOICE:
-        return word_at(option->names, index, name);
-    case ORL_OPTION_SLOT:
-        found = orl_slot_at(option->key, index);
-        snprintf(name, ORL_OPTION_NAME_BYTES, "%s", found ? orl_slot_name(found) : "");
-        return found;
-    case ORL_OPTION_FILE:
-        return file_at(option->key, index, name);
-    default:
-        return false;
-    }
+    return *(const char *const *)slot;
 }
 
 static const void *field_of(const struct orl_render_option *option,
@@ -107,7 +76,7 @@ void orl_render_option_print(const struct orl_render_option *option,
         memcpy(&slot, field_of(option, params), sizeof slot);
         snprintf(name, sizeof name, "%s", orl_slot_name(slot));
     } else {
-        orl_render_option_name(option, (size_t)*(const int *)field_of(option, params), name);
+        orl_option_word(option->names, (size_t)*(const int *)field_of(option, params), name);
     }
     snprintf(text, size, "%s", name);
 }
@@ -131,102 +100,8 @@ bool orl_render_option_read(const struct orl_render_option *option,
                             const struct orl_render_params *params)
 {
     char condition[ORL_OPTION_NAME_BYTES];
-    for (size_t i = 0; word_at(option->readers, i, condition); i++)
+    for (size_t i = 0; orl_option_word(option->readers, i, condition); i++)
         if (orl_render_params_equal(params, condition))
             return true;
     return !*option->readers;
-}
-
-// --- parameters from text ---
-
-static void append(char *list, size_t size, const char *word)
-{
-    size_t used = strlen(list);
-    snprintf(list + used, size - used, " %s", word);
-}
-
-static enum orl_result set_name(const struct orl_log *log, const struct orl_render_option *option,
-                                const char *text, void *field)
-{
-    char list[256] = "", name[ORL_OPTION_NAME_BYTES];
-    for (int i = 0; orl_render_option_name(option, (size_t)i, name); i++) {
-        append(list, sizeof list, name);
-        if (strcmp(name, text) != 0)
-            continue;
-        const void *slot = orl_slot_at(option->key, (size_t)i);
-        if (option->kind == ORL_OPTION_FILE)
-            memcpy(field, name, sizeof name);
-        else if (option->kind == ORL_OPTION_SLOT)
-            memcpy(field, &slot, sizeof slot);
-        else
-            memcpy(field, &i, sizeof i); // enums of this struct are ints
-        return ORL_OK;
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "%s=%s: must be one of%s", option->key, text, list);
-}
-
-static enum orl_result set_value(const struct orl_log *log,
-                                 const struct orl_render_option *option, const char *text,
-                                 struct orl_render_params *params)
-{
-    void *field = (char *)params + option->offset;
-    if (option->kind != ORL_OPTION_NUMBER)
-        return set_name(log, option, text, field);
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value >= option->least && value <= option->most))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%s=%s: must be a number from %g to %g",
-                        option->key, text, option->least, option->most);
-    *(float *)field = (float)value;
-    return ORL_OK;
-}
-
-static enum orl_result find_key(const struct orl_log *log, const char *assignment,
-                                const struct orl_render_option **option)
-{
-    char list[512] = "";
-    size_t length = strcspn(assignment, "=");
-    if (assignment[length] != '=')
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: must be KEY=VALUE", assignment);
-    for (*option = orl_render_options; (*option)->key; (*option)++) {
-        if (strlen((*option)->key) == length && strncmp((*option)->key, assignment, length) == 0)
-            return ORL_OK;
-        append(list, sizeof list, (*option)->key);
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "option %.*s is not known; there are:%s", (int)length,
-                    assignment, list);
-}
-
-enum orl_result orl_render_params_assign(const struct orl_log *log,
-                                         struct orl_render_params *params,
-                                         const char *const *assignments, size_t count)
-{
-    const struct orl_render_option *option;
-    struct orl_render_params changed = *params;
-    for (size_t i = 0; i < count; i++) {
-        enum orl_result result = find_key(log, assignments[i], &option);
-        ORL_THEN(result, set_value(log, option, assignments[i] + strlen(option->key) + 1, &changed));
-        if (result != ORL_OK)
-            return result;
-    }
-    // Checked after all assignments, since a later one may choose what reads an option.
-    for (size_t i = 0; i < count; i++) {
-        enum orl_result result = find_key(log, assignments[i], &option);
-        if (result != ORL_OK)
-            return result;
-        if (!orl_render_option_read(option, &changed))
-            return orl_fail(log, ORL_ERR_ARGUMENT,
-                            "%s: this method does not read it; it belongs to: %s", assignments[i],
-                            option->readers);
-    }
-    enum orl_result result = orl_render_params_check(log, &changed);
-    if (result == ORL_OK)
-        *params = changed;
-    return result;
-}
-
-enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_render_params *params,
-                                      const char *assignment)
-{
-    return orl_render_params_assign(log, params, &assignment, 1);
 }
