@@ -27,8 +27,6 @@ struct orl_figures_params {
     ORL_FIGURES_OPTIONS(ORL_OPTION_MEMBER)
     int width, height; // pixels, [ORL_FIGURES_SIDE_MIN, ORL_FIGURES_SIDE_MAX]
 };
-#define ORL_FIGURES_DEFAULTS \
-    ORL_FIGURES_OPTIONS(ORL_OPTION_PRESET) .width = 640, .height = 480
 
 // ORL_ERR_ARGUMENT, logged, for a value out of range.
 enum orl_result orl_figures_check(const struct orl_log *log,

@@ -217,9 +217,8 @@ struct jpeg_output {
     int quality;
     uint8_t *exif;
     size_t exif_size;
-    FILE *stream; // NULL: write to memory
-    uint8_t *data; // owned by the caller, also after an error
-    unsigned long size;
+    FILE *stream;
+    bool smaller; // costs a second pass over the picture
 };
 
 static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info, struct jpeg_output *out)
@@ -228,17 +227,14 @@ static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info, struct 
     if (setjmp(job->on_error))
         return orl_fail(job->log, ORL_ERR_IO, "%s: %s", job->path, job->message);
     jpeg_create_compress(info);
-    if (out->stream)
-        jpeg_stdio_dest(info, out->stream);
-    else
-        jpeg_mem_dest(info, &out->data, &out->size);
+    jpeg_stdio_dest(info, out->stream);
     info->image_width = (JDIMENSION)image->width;
     info->image_height = (JDIMENSION)image->height;
     info->input_components = image->channels;
     info->in_color_space = image->channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg_set_defaults(info);
     jpeg_set_quality(info, out->quality, TRUE);
-    info->optimize_coding = out->stream != NULL; // costs a second pass over the picture
+    info->optimize_coding = out->smaller;
     if (out->quality >= 90 && image->channels == 3) {
         info->comp_info[0].h_samp_factor = 1;
         info->comp_info[0].v_samp_factor = 1;
@@ -265,7 +261,7 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
     struct jpeg_job job = {0};
     struct jpeg_compress_struct info = {0};
     struct orl_atomic_file file = {0};
-    struct jpeg_output out = {.image = image, .quality = quality};
+    struct jpeg_output out = {.image = image, .quality = quality, .smaller = true};
     start_job(&job, (j_common_ptr)&info, log, path);
     if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: a JPEG has at most %ld pixels a side",
@@ -291,15 +287,21 @@ enum orl_result orl_jpeg_encode(const struct orl_log *log, const struct orl_imag
     ORL_REQUIRE(log, quality >= 1 && quality <= 100);
     struct jpeg_job job = {0};
     struct jpeg_compress_struct info = {0};
-    struct jpeg_output out = {.image = image, .quality = quality};
+    char *bytes = NULL;
+    *data = NULL;
+    // Not libjpeg's own memory: when that cannot grow, nobody knows any more which of it is still to be freed.
+    FILE *stream = open_memstream(&bytes, size);
+    if (!stream)
+        return orl_fail(log, ORL_ERR_MEMORY, "no memory for a JPEG picture");
+    struct jpeg_output out = {.image = image, .quality = quality, .stream = stream};
     start_job(&job, (j_common_ptr)&info, log, "picture");
     enum orl_result result = encode(&job, &info, &out);
     jpeg_destroy_compress(&info);
-    if (result != ORL_OK) {
-        free(out.data);
-        return result;
-    }
-    *data = out.data;
-    *size = out.size;
-    return ORL_OK;
+    if (fclose(stream) != 0 && result == ORL_OK)
+        result = orl_fail(log, ORL_ERR_MEMORY, "no memory for a JPEG picture");
+    if (result == ORL_OK)
+        *data = (uint8_t *)bytes;
+    else
+        free(bytes);
+    return result;
 }
