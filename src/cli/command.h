@@ -73,7 +73,7 @@ struct command {
 // Every command, in the order of the overview: command_NAME in cmd_NAME.c.
 #define COMMANDS(NAME) \
     NAME(prepare) NAME(import) NAME(synth) NAME(densify) NAME(lod) NAME(render) NAME(walk) \
-    NAME(publish) NAME(export) NAME(hdr) NAME(info) NAME(methods) NAME(eval) NAME(bench) \
+    NAME(publish) NAME(export) NAME(hdr) NAME(info) NAME(methods) NAME(refine) NAME(eval) NAME(bench) \
     NAME(chart) NAME(stress) NAME(plot) NAME(tune) NAME(trim) NAME(plan) NAME(help) NAME(calibrate) NAME(fuse)
 #define COMMAND_DECLARATION(name) extern const struct command command_##name;
 COMMANDS(COMMAND_DECLARATION)

@@ -14,6 +14,7 @@
 #include "render/proxy/proxy.h"
 #include "render/read_back.h"
 #include "render/reconstructions.h"
+#include "render/soft_layer.h"
 
 enum { PROXIES_MAX = 4 };
 
@@ -26,6 +27,7 @@ struct orl_renderer {
     struct photos photos;
     struct paint paint;
     struct room room;
+    struct soft_layer soft;
     struct orl_tex *picture;  // of struct frame
     struct orl_tex *mean;     // reconstructions.h; NULL: a frame is one picture
     size_t *chosen;           // memory of struct frame's list
@@ -119,6 +121,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_photos_finish(r->gpu, &r->photos);
     orl_paint_finish(r->gpu, &r->paint);
     orl_room_finish(r->gpu, &r->room);
+    orl_soft_layer_finish(r->gpu, &r->soft);
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->picture);
     orl_tex_destroy(r->gpu, &r->mean);
@@ -205,6 +208,8 @@ static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool no
         if (result == ORL_OK && count > 1)
             orl_reconstruction_add(frame, r->mean, done, count);
     }
+    if (result == ORL_OK && orl_soft_layer_shows(frame))
+        result = orl_soft_layer_mix(frame, &r->soft);
     if (result == ORL_OK && done > 1) // what is read back beside the picture is the scene's own
         result = draw_surface(frame, frame->params);
     return result;

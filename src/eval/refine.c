@@ -1,0 +1,200 @@
+#include "eval/refine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "eval/heldout.h"
+#include "io/picture.h"
+#include "scene/meter.h"
+#include "soft/descent.h"
+#include "soft/soft_ply.h"
+
+// Far splats: one of GRID x GRID pixels, as many in all views together as FAR_VIEWS views have open pixels. A
+// pixel is open if more than OPEN of it passes all splats of points. They lie at NEAR_FROM to FAR_TO of the
+// depth within which FAR_SHARE of the view's splats are.
+enum { GRID = 4, FAR_VIEWS = 3 };
+// With so many training photographs held-out ones gain, with half as many they lose (docs/how/oriel.md).
+enum { FEW = 16 };
+static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
+static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
+
+struct refine {
+    const struct orl_log *log;
+    const struct orl_scene *scene;
+    const struct orl_refine_params *params;
+    struct orl_soft_photo *photos; // owned
+    size_t count;
+    struct orl_soft_model model;   // owned
+};
+
+// --- photographs ---
+
+// What stands before the scene in a photograph, at the size of `use`.
+static enum orl_result read_occluders(const struct refine *r, size_t photo, struct orl_soft_photo *to)
+{
+    if (!(r->scene->photos[photo].occluded > 0))
+        return ORL_OK;
+    struct orl_image mask = {0};
+    const int width = to->color.width, height = to->color.height;
+    char *path = orl_scene_occluders_path(r->log, r->scene, photo);
+    enum orl_result result = path ? orl_picture_read(r->log, path, 1, &mask) : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_image_init(r->log, &to->use, width, height, 1, ORL_PIXEL_U8));
+    for (int y = 0; result == ORL_OK && y < height; y++)
+        for (int x = 0; x < width; x++) {
+            size_t from = (size_t)(y * mask.height / height) * (size_t)mask.width + (size_t)(x * mask.width / width);
+            to->use.u8[(size_t)y * (size_t)width + (size_t)x] = mask.u8[from] < 128;
+        }
+    orl_image_finish(&mask);
+    free(path);
+    return result;
+}
+
+// The photograph at the scene's exposure and white balance, without its vignetting.
+static enum orl_result read_photo(const struct refine *r, size_t photo, struct orl_soft_photo *to)
+{
+    const struct orl_photo *from = &r->scene->photos[photo];
+    struct orl_heldout read = {0};
+    enum orl_result result = orl_heldout_load(r->log, r->scene, photo, r->params->size_divide, &read);
+    const int width = read.picture.width, height = read.picture.height;
+    ORL_THEN(result, orl_image_init(r->log, &to->color, width, height, 3, ORL_PIXEL_F32));
+    for (int y = 0; result == ORL_OK && y < height; y++)
+        for (int x = 0; x < width; x++) {
+            float light = fmaxf(orl_illumination(from->vignette, &read.view.camera, x + 0.5, y + 0.5), 0.1f);
+            size_t at = 3 * ((size_t)y * (size_t)width + (size_t)x);
+            for (size_t c = 0; c < 3; c++) {
+                float value = orl_srgb_decode((float)read.picture.u8[at + c] / 255);
+                to->color.f32[at + c] = orl_srgb_encode(orl_light_aligned(from->gain[c] / light, value));
+            }
+        }
+    to->view = read.view;
+    orl_heldout_finish(&read);
+    ORL_THEN(result, read_occluders(r, photo, to));
+    return result;
+}
+
+static enum orl_result read_photos(struct refine *r)
+{
+    r->photos = orl_array(r->log, r->scene->photo_count, sizeof *r->photos);
+    enum orl_result result = r->photos ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < r->scene->photo_count; i++) {
+        if (r->scene->photos[i].test)
+            continue;
+        result = read_photo(r, i, &r->photos[r->count++]);
+        orl_progress_report(r->params->progress, "photographs", (double)(i + 1), (double)r->scene->photo_count,
+                            r->scene->photos[i].name);
+    }
+    if (result == ORL_OK && r->count == 0)
+        return orl_fail(r->log, ORL_ERR_DATA, "every photograph is held out");
+    if (result == ORL_OK && r->count < FEW)
+        orl_logf(r->log, ORL_LOG_WARNING, "%zu photographs are few: soft splats fit them, and not what lies between",
+                 r->count);
+    return result;
+}
+
+// --- far splats ---
+
+// Where pixels of a view are open, splats beyond and among the farthest.
+static enum orl_result add_far(struct refine *r, const struct orl_soft_raster *raster, const float *blended,
+                               const struct orl_soft_photo *photo, uint64_t *state)
+{
+    const struct orl_camera *c = &photo->view.camera;
+    if (raster->lists.seen == 0)
+        return ORL_OK;
+    uint32_t bits = raster->lists.order[(size_t)(FAR_SHARE * (double)(raster->lists.seen - 1))].depth;
+    float far;
+    memcpy(&far, &bits, sizeof far);
+    for (int y = GRID / 2; y < c->height; y += GRID)
+        for (int x = GRID / 2; x < c->width; x += GRID) {
+            size_t pixel = (size_t)y * (size_t)c->width + (size_t)x;
+            if ((double)blended[4 * pixel + 3] < OPEN || orl_soft_random(state) * (double)r->count > FAR_VIEWS)
+                continue;
+            double beyond = orl_soft_random(state), part = orl_soft_random(state);
+            double z = (double)far * (beyond < 0.5 ? 1 + 2 * part : 0.6 + 0.6 * part);
+            const double p[3] = {(x + 0.5 - c->cx) / c->fx * z, (y + 0.5 - c->cy) / c->fy * z, z};
+            const struct orl_pose *pose = &photo->view.cam_from_world;
+            double world[3];
+            for (int k = 0; k < 3; k++) {
+                world[k] = 0;
+                for (int j = 0; j < 3; j++)
+                    world[k] += pose->r[j][k] * (p[j] - pose->t[j]);
+            }
+            ORL_TRY(orl_soft_add(r->log, &r->model, world, SIGMA * GRID * z / c->fx, FAR_OPACITY,
+                                 photo->color.f32 + 3 * pixel));
+        }
+    return ORL_OK;
+}
+
+static enum orl_result add_all_far(struct refine *r, struct orl_gpu *gpu)
+{
+    uint64_t state = 0xd1342543de82ef95u ^ (r->params->seed + 1) * 0x9e3779b97f4a7c15u;
+    struct orl_soft_raster raster = {0};
+    struct orl_image blended = {0};
+    enum orl_result result = orl_soft_raster_init(gpu, &r->model, &raster);
+    for (size_t i = 0; result == ORL_OK && i < r->count; i++) {
+        struct soft_block block;
+        const struct orl_camera *c = &r->photos[i].view.camera;
+        orl_image_finish(&blended);
+        result = orl_soft_raster_draw(gpu, &raster, &r->photos[i].view, false, &block);
+        ORL_THEN(result, orl_image_init(r->log, &blended, c->width, c->height, 4, ORL_PIXEL_F32));
+        if (result == ORL_OK) {
+            orl_tex_read(raster.blended, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&blended), blended.f32);
+            result = orl_gpu_finish(gpu);
+        }
+        ORL_THEN(result, add_far(r, &raster, blended.f32, &r->photos[i], &state));
+    }
+    orl_image_finish(&blended);
+    orl_soft_raster_finish(gpu, &raster);
+    return result;
+}
+
+// --- the whole ---
+
+static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+{
+    const struct orl_points *points = &r->scene->points;
+    const double every = fmax(1, (double)points->count / r->params->splats);
+    ORL_TRY(orl_soft_from_points(r->log, points, every, r->params->seed, &r->model));
+    if (r->model.count == 0)
+        return orl_fail(r->log, ORL_ERR_DATA, "the scene has no points to make splats of");
+    report->points = r->model.count;
+    ORL_TRY(add_all_far(r, gpu));
+    report->far = r->model.count - report->points;
+    return ORL_OK;
+}
+
+static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+{
+    struct orl_soft_descent_report made = {0};
+    ORL_TRY(read_photos(r));
+    ORL_TRY(start(r, gpu, report));
+    const struct orl_soft_descent_params params = {.steps = r->params->steps * (int)r->count, .seed = r->params->seed,
+                                                   .budget_s = r->params->budget_s, .progress = r->params->progress};
+    ORL_TRY(orl_soft_descend(gpu, r->photos, r->count, &params, &r->model, &made));
+    orl_soft_drop(&r->model, FADED);
+    report->photographs = r->count;
+    report->splats = r->model.count;
+    report->steps = made.steps;
+    report->loss = made.loss;
+    return ORL_OK;
+}
+
+enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
+                           struct orl_refine_report *report)
+{
+    struct refine r = {.log = orl_gpu_log(gpu), .scene = scene, .params = params};
+    *report = (struct orl_refine_report){0};
+    char *path = orl_format(r.log, "%s/%s", scene->dir, ORL_SOFT_NAME);
+    enum orl_result result = path ? descend(&r, gpu, report) : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_soft_write(r.log, path, &r.model));
+    for (size_t i = 0; i < r.count; i++) {
+        orl_image_finish(&r.photos[i].color);
+        orl_image_finish(&r.photos[i].use);
+    }
+    free(r.photos);
+    orl_soft_finish(&r.model);
+    free(path);
+    return result;
+}

@@ -1,0 +1,160 @@
+#include "soft/descent.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/process.h"
+#include "soft/loss.h"
+
+static const double LAST_DECAY = 0.1; // factor on the step sizes, which falls to this from 1
+static const double LOSS_SMOOTHED = 0.98; // of the running mean
+
+enum orl_result orl_soft_descent_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
+                                      struct orl_soft_descent *descent)
+{
+    const size_t bytes = model->count * sizeof *model->splats;
+    *descent = (struct orl_soft_descent){0};
+    enum orl_result result = orl_soft_raster_init(gpu, model, &descent->raster);
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "mean gradients", bytes, NULL, &descent->mean));
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "squared gradients", bytes, NULL, &descent->square));
+    ORL_THEN(result, orl_tex_view_buffer(gpu, descent->mean, GL_RGBA32F, &descent->mean_texels));
+    ORL_THEN(result, orl_tex_view_buffer(gpu, descent->square, GL_RGBA32F, &descent->square_texels));
+    if (result != ORL_OK)
+        orl_soft_descent_finish(gpu, descent);
+    return result;
+}
+
+void orl_soft_descent_finish(struct orl_gpu *gpu, struct orl_soft_descent *descent)
+{
+    orl_soft_raster_finish(gpu, &descent->raster);
+    orl_buf_destroy(gpu, &descent->places);
+    orl_tex_destroy(gpu, &descent->share_texels);
+    orl_tex_destroy(gpu, &descent->mean_texels);
+    orl_tex_destroy(gpu, &descent->square_texels);
+    orl_buf_destroy(gpu, &descent->shares);
+    orl_buf_destroy(gpu, &descent->mean);
+    orl_buf_destroy(gpu, &descent->square);
+    orl_tex_destroy(gpu, &descent->gradient_target);
+    orl_image_finish(&descent->picture);
+    orl_image_finish(&descent->gradient);
+}
+
+// Makes what depends on the view's size fit.
+static enum orl_result resize(struct orl_gpu *gpu, struct orl_soft_descent *d, int width, int height)
+{
+    if (d->picture.data && d->picture.width == width && d->picture.height == height)
+        return ORL_OK;
+    const struct orl_log *log = orl_gpu_log(gpu);
+    orl_image_finish(&d->picture);
+    orl_image_finish(&d->gradient);
+    orl_tex_destroy(gpu, &d->gradient_target);
+    ORL_TRY(orl_image_init(log, &d->picture, width, height, 4, ORL_PIXEL_F32));
+    ORL_TRY(orl_image_init(log, &d->gradient, width, height, 4, ORL_PIXEL_F32));
+    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height, .format = GL_RGBA32F,
+                                                        .owner = ORL_OWNER_FRAME, .tag = "gradient of the picture"},
+                          &d->gradient_target);
+}
+
+// Sums the gradients of each splat and steps against them.
+static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, const struct soft_block *block)
+{
+    const struct orl_soft_raster *r = &d->raster;
+    const size_t places = (r->count + 1 + r->lists.entries) * sizeof(int);
+    const size_t shares = (r->lists.entries ? r->lists.entries : 1) * ORL_SOFT_SHARE_VEC4S * 4 * sizeof(float);
+    ORL_TRY(orl_soft_buffer(gpu, "places of soft splats", places, &d->places));
+    const struct orl_buf *before = d->shares;
+    ORL_TRY(orl_soft_buffer(gpu, "gradients of tiles", shares, &d->shares));
+    if (!d->share_texels || before != d->shares) {
+        orl_tex_destroy(gpu, &d->share_texels);
+        ORL_TRY(orl_tex_view_buffer(gpu, d->shares, GL_RGBA32F, &d->share_texels));
+    }
+    orl_buf_write(d->places, 0, places, r->lists.places);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/backward.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
+        .images = {{r->blended, 0, GL_READ_ONLY}, {d->gradient_target, 0, GL_READ_ONLY},
+                   [5] = {d->share_texels, 0, GL_WRITE_ONLY}, [6] = {r->seen, 0, GL_READ_ONLY}, [7] = {r->entries, 0, GL_READ_ONLY}},
+        .groups = {orl_groups((size_t)block->tiles_across * orl_groups((size_t)block->view_size[1], ORL_SOFT_TILE),
+                              ORL_SOFT_BACKWARD_GROUP)},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
+        .bufs = {[2] = {.buf = r->bounds}, [3] = {.buf = d->places}},
+        .images = {[2] = {r->values, 0, GL_READ_WRITE}, [3] = {d->mean_texels, 0, GL_READ_WRITE},
+                   [4] = {d->square_texels, 0, GL_READ_WRITE}, [5] = {d->share_texels, 0, GL_READ_ONLY},
+                   [6] = {r->seen, 0, GL_READ_ONLY}},
+        .groups = {orl_groups(r->count, ORL_POINT_GROUP)},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT});
+    return ORL_OK;
+}
+
+enum orl_result orl_soft_descent_step(struct orl_gpu *gpu, struct orl_soft_descent *d,
+                                      const struct orl_soft_photo *photo, float decay, double *loss)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    struct soft_block block;
+    ORL_TRY(orl_soft_raster_draw(gpu, &d->raster, &photo->view, false, &block));
+    ORL_TRY(resize(gpu, d, photo->view.camera.width, photo->view.camera.height));
+    orl_tex_read(d->raster.blended, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&d->picture), d->picture.f32);
+    ORL_TRY(orl_gpu_finish(gpu));
+    ORL_TRY(orl_soft_loss(log, &d->picture, &photo->color, photo->use.data ? &photo->use : NULL, &d->gradient, loss));
+    orl_tex_write(d->gradient_target, 0, 0, GL_RGBA, GL_FLOAT, d->gradient.f32);
+    block.eye[3] = decay;
+    return update(gpu, d, &block);
+}
+
+// Puts the numbers from 0 on into a random order (Fisher and Yates).
+static void shuffle(size_t *order, size_t count, uint64_t *state)
+{
+    for (size_t i = count - 1; i > 0; i--) {
+        size_t k = (size_t)(orl_soft_random(state) * (double)(i + 1)), other = order[i];
+        order[i] = order[k];
+        order[k] = other;
+    }
+}
+
+static enum orl_result run(struct orl_gpu *gpu, struct orl_soft_descent *d, const struct orl_soft_photo *photos,
+                           size_t *order, size_t count, const struct orl_soft_descent_params *params,
+                           struct orl_soft_descent_report *report)
+{
+    uint64_t state = 0x2545f4914f6cdd1du ^ (params->seed + 1) * 0x9e3779b97f4a7c15u;
+    const double started = orl_time_s();
+    for (int s = 0; s < params->steps; s++) {
+        if (params->budget_s > 0 && orl_time_s() - started > params->budget_s)
+            break;
+        if (orl_progress_cancelled(params->progress))
+            return ORL_ERR_CANCELLED;
+        if ((size_t)s % count == 0)
+            shuffle(order, count, &state);
+        double loss, decay = pow(LAST_DECAY, (double)(s + 1) / params->steps);
+        ORL_TRY(orl_soft_descent_step(gpu, d, &photos[order[(size_t)s % count]], (float)decay, &loss));
+        report->loss = s ? LOSS_SMOOTHED * report->loss + (1 - LOSS_SMOOTHED) * loss : loss;
+        report->steps = s + 1;
+        orl_progress_report(params->progress, "descent", s + 1, params->steps, NULL);
+    }
+    return orl_gpu_finish(gpu);
+}
+
+enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_photo *photos, size_t count,
+                                 const struct orl_soft_descent_params *params, struct orl_soft_model *model,
+                                 struct orl_soft_descent_report *report)
+{
+    ORL_REQUIRE(orl_gpu_log(gpu), count > 0 && model->count > 0);
+    *report = (struct orl_soft_descent_report){0};
+    struct orl_soft_descent descent = {0};
+    size_t *order = orl_array(orl_gpu_log(gpu), count, sizeof *order);
+    if (!order)
+        return ORL_ERR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        order[i] = i;
+    enum orl_result result = orl_soft_descent_init(gpu, model, &descent);
+    ORL_THEN(result, run(gpu, &descent, photos, order, count, params, report));
+    if (result == ORL_OK) {
+        orl_buf_read(descent.raster.splats, 0, model->count * sizeof *model->splats, model->splats);
+        result = orl_gpu_finish(gpu);
+    }
+    orl_soft_descent_finish(gpu, &descent);
+    free(order);
+    return result;
+}

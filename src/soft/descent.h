@@ -1,0 +1,51 @@
+// Adjusts soft splats by descent on photographs (Kerbl 2023, without its densification: the points are there).
+#ifndef ORL_SOFT_DESCENT_H
+#define ORL_SOFT_DESCENT_H
+
+#include "oriel/image.h"
+#include "oriel/progress.h"
+#include "soft/soft_raster.h"
+
+// A photograph to adjust to.
+struct orl_soft_photo {
+    struct orl_view view;
+    struct orl_image color; // F32 x3, sRGB at the scene's exposure, [0, 1], as large as the view
+    struct orl_image use;   // U8 x1: 0 where it shows what stands before the scene; no data: nowhere
+};
+
+struct orl_soft_descent_params {
+    int steps;
+    uint64_t seed;     // of the order of the photographs
+    double budget_s;   // no step begins after so long; 0: any
+    const struct orl_progress *progress; // NULL: none
+};
+
+// What descent leaves behind beside the model.
+struct orl_soft_descent_report {
+    int steps;         // that were made
+    double loss;       // running mean
+};
+
+// Adjusts the model in place. The result is the same for the same seed on the same device.
+enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_photo *photos, size_t count,
+                                 const struct orl_soft_descent_params *params, struct orl_soft_model *model,
+                                 struct orl_soft_descent_report *report) ORL_CHECK_RESULT;
+
+// One step's device state, for a test of the gradients.
+struct orl_soft_descent {
+    struct orl_soft_raster raster;
+    struct orl_buf *places, *shares, *mean, *square; // owned
+    struct orl_tex *share_texels, *mean_texels, *square_texels; // owned: views of three of these
+    struct orl_tex *gradient_target;                 // owned
+    struct orl_image picture, gradient;              // owned
+};
+enum orl_result orl_soft_descent_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
+                                      struct orl_soft_descent *descent) ORL_CHECK_RESULT;
+// Draws the photograph's view and steps against the loss, whose value before the step is *loss. decay: factor
+// on the step sizes; 0: the splats stay as they are.
+enum orl_result orl_soft_descent_step(struct orl_gpu *gpu, struct orl_soft_descent *descent,
+                                      const struct orl_soft_photo *photo, float decay,
+                                      double *loss) ORL_CHECK_RESULT;
+void orl_soft_descent_finish(struct orl_gpu *gpu, struct orl_soft_descent *descent);
+
+#endif

@@ -1,0 +1,108 @@
+#include "soft/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scene/ply.h"
+
+// Standard deviation of a disc's splat, in radii of the disc, and of its third axis as a part of the others.
+static const double SIGMA = 0.5, THIN = 0.25;
+static const float DISC_LOGIT = 1; // opacity 0.73
+
+double orl_soft_random(uint64_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    return (double)(*state >> 11) / 9007199254740992.0;
+}
+
+static float logarithm(double value)
+{
+    return (float)log(value);
+}
+
+static float logit(float opacity)
+{
+    return logf(opacity / (1 - opacity));
+}
+
+static enum orl_result grow(const struct orl_log *log, struct orl_soft_model *model, float **values)
+{
+    ORL_TRY(ORL_GROW(log, model->splats, model->capacity, model->count));
+    *values = model->splats[model->count++];
+    memset(*values, 0, sizeof *model->splats);
+    (*values)[ORL_SOFT_TURN] = 1;
+    return ORL_OK;
+}
+
+// The shortest rotation from the third axis to the normal.
+static void turn_to(const float n[3], float q[4])
+{
+    float sign = n[2] < 0 ? -1.0f : 1.0f; // of a disc either side will do
+    q[0] = 1 + sign * n[2];
+    q[1] = -sign * n[1];
+    q[2] = sign * n[0];
+}
+
+enum orl_result orl_soft_from_points(const struct orl_log *log, const struct orl_points *points, double every,
+                                     uint64_t seed, struct orl_soft_model *model)
+{
+    ORL_REQUIRE(log, every >= 1);
+    uint64_t state = 0x9e3779b97f4a7c15u ^ (seed + 1) * 0xbf58476d1ce4e5b9u;
+    for (size_t i = 0; i < points->count; i++) {
+        if (orl_soft_random(&state) * every >= 1 || !(points->radius[i] > 0))
+            continue;
+        float *s;
+        ORL_TRY(grow(log, model, &s));
+        memcpy(s + ORL_SOFT_PLACE, points->position[i], sizeof points->position[i]);
+        s[ORL_SOFT_OPACITY] = DISC_LOGIT;
+        double sigma = SIGMA * sqrt(every) * (double)points->radius[i];
+        s[ORL_SOFT_SIGMA] = s[ORL_SOFT_SIGMA + 1] = logarithm(sigma);
+        s[ORL_SOFT_SIGMA + 2] = logarithm(THIN * sigma);
+        turn_to(points->normal[i], s + ORL_SOFT_TURN);
+        for (int c = 0; c < 3; c++)
+            s[ORL_SOFT_COLOR + c] = (float)((points->color[i][c] / 255.0 - 0.5) / ORL_HARMONIC_0);
+    }
+    return ORL_OK;
+}
+
+enum orl_result orl_soft_add(const struct orl_log *log, struct orl_soft_model *model, const double place[3],
+                             double sigma, float opacity, const float rgb[3])
+{
+    float *s;
+    ORL_TRY(grow(log, model, &s));
+    for (int k = 0; k < 3; k++) {
+        s[ORL_SOFT_PLACE + k] = (float)place[k];
+        s[ORL_SOFT_SIGMA + k] = logarithm(sigma);
+        s[ORL_SOFT_COLOR + k] = (float)(((double)rgb[k] - 0.5) / ORL_HARMONIC_0);
+    }
+    s[ORL_SOFT_OPACITY] = logit(opacity);
+    return ORL_OK;
+}
+
+static bool is_kept(const float *s, float logit)
+{
+    bool finite = true;
+    for (int k = 0; k < ORL_SOFT_VALUES; k++)
+        finite = finite && isfinite(s[k]);
+    return finite && s[ORL_SOFT_OPACITY] >= logit;
+}
+
+void orl_soft_drop(struct orl_soft_model *model, float opacity)
+{
+    const float least = logit(opacity);
+    size_t kept = 0;
+    for (size_t i = 0; i < model->count; i++)
+        if (is_kept(model->splats[i], least))
+            memmove(model->splats[kept++], model->splats[i], sizeof *model->splats);
+    model->count = kept;
+}
+
+void orl_soft_finish(struct orl_soft_model *model)
+{
+    free(model->splats);
+    memset(model, 0, sizeof *model);
+}

@@ -1,0 +1,17 @@
+// Soft splats as a PLY file in the layout of Kerbl 2023, which other programs read, too: positions, harmonics by
+// channel, logits of opacities, logarithms of standard deviations, quaternions;
+// and behind these the size of a photograph's pixel where the splat is.
+#ifndef ORL_SOFT_PLY_H
+#define ORL_SOFT_PLY_H
+
+#include "soft/model.h"
+
+#define ORL_SOFT_NAME "soft.ply" // of the file in a scene
+
+enum orl_result orl_soft_write(const struct orl_log *log, const char *path,
+                               const struct orl_soft_model *model) ORL_CHECK_RESULT;
+// Reads a file that orl_soft_write wrote. ORL_ERR_FORMAT: it is another, or damaged.
+enum orl_result orl_soft_read(const struct orl_log *log, const char *path,
+                              struct orl_soft_model *model) ORL_CHECK_RESULT;
+
+#endif

@@ -1,0 +1,119 @@
+#include "soft/soft_raster.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+// Variance that every splat's projection gains, pixels^2, so that none is narrower than a pixel (Kerbl 2023).
+static const float LOW_PASS = 0.3f;
+
+enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf)
+{
+    if (*buf && (*buf)->size >= size)
+        return ORL_OK;
+    orl_buf_destroy(gpu, buf);
+    return orl_buf_create(gpu, ORL_OWNER_POINTS, tag, (size + size / 2 + 15) / 16 * 16, NULL, buf);
+}
+
+enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
+                                     struct orl_soft_raster *raster)
+{
+    const size_t n = model->count, vec4 = 4 * sizeof(float);
+    *raster = (struct orl_soft_raster){.count = n};
+    raster->host_bounds = orl_array(orl_gpu_log(gpu), n, sizeof *raster->host_bounds);
+    enum orl_result result = raster->host_bounds ? ORL_OK : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "soft splats", n * sizeof *model->splats, model->splats,
+                                    &raster->splats));
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "projected soft splats", n * ORL_SOFT_SEEN_VEC4S * vec4,
+                                    NULL, &raster->projected));
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "bounds of soft splats", n * sizeof *raster->host_bounds,
+                                    NULL, &raster->bounds));
+    ORL_THEN(result, orl_tex_view_buffer(gpu, raster->splats, GL_RGBA32F, &raster->values));
+    ORL_THEN(result, orl_tex_view_buffer(gpu, raster->projected, GL_RGBA32F, &raster->seen));
+    if (result != ORL_OK)
+        orl_soft_raster_finish(gpu, raster);
+    return result;
+}
+
+void orl_soft_raster_finish(struct orl_gpu *gpu, struct orl_soft_raster *raster)
+{
+    orl_tex_destroy(gpu, &raster->values);
+    orl_tex_destroy(gpu, &raster->seen);
+    orl_tex_destroy(gpu, &raster->entries);
+    orl_buf_destroy(gpu, &raster->splats);
+    orl_buf_destroy(gpu, &raster->projected);
+    orl_buf_destroy(gpu, &raster->bounds);
+    orl_buf_destroy(gpu, &raster->listed);
+    orl_tex_destroy(gpu, &raster->blended);
+    orl_soft_lists_finish(&raster->lists);
+    free(raster->host_bounds);
+    memset(raster, 0, sizeof *raster);
+}
+
+static struct soft_block block_of(const struct orl_soft_raster *raster, const struct orl_view *view)
+{
+    const struct orl_camera *c = &view->camera;
+    struct soft_block block = {
+        .focal = {(float)c->fx, (float)c->fy, (float)c->cx, (float)c->cy},
+        .view_size = {c->width, c->height},
+        .splat_count = (int)raster->count,
+        .tiles_across = (int)orl_groups((size_t)c->width, ORL_SOFT_TILE),
+        .low_pass = LOW_PASS,
+    };
+    double eye[3];
+    orl_pose_centre(&view->cam_from_world, eye);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            block.rotation[i][j] = (float)view->cam_from_world.r[i][j];
+        block.eye[i] = (float)eye[i];
+    }
+    return block;
+}
+
+static enum orl_result fit_target(struct orl_gpu *gpu, struct orl_soft_raster *raster, int width, int height)
+{
+    if (raster->blended && raster->blended->params.width == width && raster->blended->params.height == height)
+        return ORL_OK;
+    orl_tex_destroy(gpu, &raster->blended);
+    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height, .format = GL_RGBA32F,
+                                                        .owner = ORL_OWNER_FRAME, .tag = "blended soft splats"},
+                          &raster->blended);
+}
+
+enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
+                                     const struct orl_view *view, bool smooths,
+                                     struct soft_block *block)
+{
+    *block = block_of(raster, view);
+    block->smooths = smooths;
+    const int down = (int)orl_groups((size_t)view->camera.height, ORL_SOFT_TILE);
+    ORL_TRY(fit_target(gpu, raster, view->camera.width, view->camera.height));
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
+        .bufs = {[2] = {.buf = raster->bounds}},
+        .images = {[2] = {raster->values, 0, GL_READ_ONLY}, [6] = {raster->seen, 0, GL_WRITE_ONLY}},
+        .groups = {orl_groups(raster->count, ORL_POINT_GROUP)},
+        .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                   GL_BUFFER_UPDATE_BARRIER_BIT});
+    orl_buf_read(raster->bounds, 0, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
+    ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
+    ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, block->tiles_across, down,
+                                &raster->lists));
+    size_t bytes = ((size_t)block->tiles_across * (size_t)down + 1 + raster->lists.entries) * sizeof(int);
+    const struct orl_buf *listed = raster->listed;
+    ORL_TRY(orl_soft_buffer(gpu, "lists of soft splats", bytes, &raster->listed));
+    if (!raster->entries || listed != raster->listed) {
+        orl_tex_destroy(gpu, &raster->entries);
+        ORL_TRY(orl_tex_view_buffer(gpu, raster->listed, GL_R32I, &raster->entries));
+    }
+    orl_buf_write(raster->listed, 0, bytes, raster->lists.listed);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/blend.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
+        .images = {{raster->blended, 0, GL_WRITE_ONLY}, [6] = {raster->seen, 0, GL_READ_ONLY},
+                   [7] = {raster->entries, 0, GL_READ_ONLY}},
+        .groups = {orl_groups((size_t)view->camera.width, ORL_SOFT_BLEND_GROUP),
+                   orl_groups((size_t)view->camera.height, ORL_SOFT_BLEND_GROUP)},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
+    return ORL_OK;
+}

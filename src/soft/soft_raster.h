@@ -1,0 +1,34 @@
+// Draws soft splats into a view on the device.
+#ifndef ORL_SOFT_SOFT_RASTER_H
+#define ORL_SOFT_SOFT_RASTER_H
+
+#include "oriel/camera.h"
+#include "oriel/gpu.h"
+#include "soft/lists.h"
+#include "soft/model.h"
+
+// Zero-initialised, it holds nothing.
+struct orl_soft_raster {
+    size_t count;
+    struct orl_buf *splats, *projected, *bounds; // owned
+    struct orl_buf *listed;                      // owned: grows
+    struct orl_tex *values, *seen, *entries;     // owned: views of `splats`, `projected` and `listed`
+    struct orl_tex *blended;                     // owned: RGBA32F: sRGB colour, what passes
+    uint32_t (*host_bounds)[ORL_SOFT_BOUND_WORDS]; // owned
+    struct orl_soft_lists lists;
+};
+
+// Uploads the model, which must hold a splat.
+enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
+                                     struct orl_soft_raster *raster) ORL_CHECK_RESULT;
+void orl_soft_raster_finish(struct orl_gpu *gpu, struct orl_soft_raster *raster);
+// Draws the view into raster->blended. smooths: no splat is sharper than the photographs that it was adjusted to;
+// descent sets the same by itself. *block: the passes' parameters for this view, for those that follow.
+enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
+                                     const struct orl_view *view, bool smooths,
+                                     struct soft_block *block) ORL_CHECK_RESULT;
+// Makes *buf hold at least `size` bytes; what it held is lost when it grows.
+enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size,
+                                struct orl_buf **buf) ORL_CHECK_RESULT;
+
+#endif

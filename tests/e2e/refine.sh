@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# oriel refine on a workspace made by hand: soft splats that mend the picture of training photographs, the same twice,
+# without a look at held-out ones.
+set -u
+. "$2/tests/e2e/command_lib"
+
+workspace 5 || exit 77
+bash "$source/tests/bench/truth_cloud" photos-truth 2 >ws/fused.ply || exit 1
+scene train train train train test
+# A held-out photograph is not even read.
+head -c 700 "ws/images/${names[4]}" >short && mv short "ws/images/${names[4]}"
+
+picture() { runs "$1" "$oriel" render ws --at "${names[1]}" --set "soft=$2" --quiet --out "$3"; }
+picture 2 0.3 none.png
+grep -q 'soft.ply: missing; oriel refine' stderr.txt || fail "not said what makes soft splats"
+[ -e none.png ] && fail "a picture without them"
+
+refine=("$oriel" refine ws --steps 10 --splats 3000 --size-divide 2)
+runs 0 "${refine[@]}"
+grep -q "; 40 steps on 4 photographs, loss" stdout.txt || fail "other steps or photographs"
+[ -s ws/soft.ply ] || fail "no soft.ply"
+cp ws/soft.ply first.ply
+runs 0 "${refine[@]}"
+cmp -s first.ply ws/soft.ply || fail "a second run makes other splats"
+runs 0 "${refine[@]}" --seed 2
+cmp -s first.ply ws/soft.ply && fail "the seed does not matter"
+
+picture 0 0 own.png
+picture 0 0.3 soft.png
+cmp -s own.png soft.png && fail "soft splats change nothing"
+runs 0 "$oriel" bench ws --quick --size 64x48 --set soft=0.3 --seconds 0.1 --json bench.json
+grep -q '"soft splats"' bench.json || fail "their pass is not timed"
+
+# A damaged file is named.
+head -c 300 first.ply >ws/soft.ply
+picture 2 0.3 none.png
+grep -q 'soft.ply' stderr.txt || fail "a damaged file is not named"
+exit $failed

@@ -1,0 +1,262 @@
+// Soft splats: what a splat draws, the gradient of the loss against finite differences, and a descent.
+#include <math.h>
+
+#include "core/memory.h"
+#include "gpu_test.h"
+#include "soft/descent.h"
+
+enum { WIDTH = 40, HEIGHT = 32, SPLATS = 12 };
+
+static struct orl_gpu *gpu;
+
+static struct orl_soft_photo photograph(uint64_t seed)
+{
+    struct orl_soft_photo photo = {.view.camera = {.width = WIDTH, .height = HEIGHT, .fx = 50, .fy = 48, .cx = 19,
+                                                   .cy = 16.5}};
+    const double eye[3] = {0.4, -0.3, -4}, target[3] = {0, 0.1, 0}, up[3] = {0.1, -1, 0};
+    photo.view.cam_from_world = orl_pose_look_at(eye, target, up);
+    assert_int_equal(orl_image_init(NULL, &photo.color, WIDTH, HEIGHT, 3, ORL_PIXEL_F32), ORL_OK);
+    for (size_t i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        photo.color.f32[i] = (float)(0.5 * orl_soft_random(&seed) + 0.25 * sin(0.1 * (double)i) + 0.25);
+    return photo;
+}
+
+static struct orl_soft_model some_splats(void)
+{
+    struct orl_soft_model model = {0};
+    uint64_t state = 88172645463325252u;
+    for (int i = 0; i < SPLATS; i++) {
+        const double place[3] = {1.6 * orl_soft_random(&state) - 0.8, 1.6 * orl_soft_random(&state) - 0.8,
+                                 1.6 * orl_soft_random(&state) - 0.8};
+        const float grey[3] = {0.5f, 0.5f, 0.5f};
+        assert_int_equal(orl_soft_add(NULL, &model, place, 0.1, 0.5f, grey), ORL_OK);
+        float *s = model.splats[i];
+        for (int k = 0; k < 3; k++)
+            s[ORL_SOFT_SIGMA + k] = (float)log(0.12 + 0.25 * orl_soft_random(&state));
+        for (int k = 0; k < 4; k++)
+            s[ORL_SOFT_TURN + k] = (float)(2 * orl_soft_random(&state) - 1);
+        s[ORL_SOFT_OPACITY] = (float)(2 * orl_soft_random(&state) - 1);
+        for (int k = 0; k < 12; k++)
+            s[ORL_SOFT_COLOR + k] = (float)(orl_soft_random(&state) - 0.3);
+    }
+    return model;
+}
+
+// The loss of a model. gradient: NULL, or by its values.
+static double loss_of(const struct orl_soft_model *model, const struct orl_soft_photo *photo, float *gradient)
+{
+    struct orl_soft_descent descent;
+    double loss;
+    assert_int_equal(orl_soft_descent_init(gpu, model, &descent), ORL_OK);
+    assert_int_equal(orl_soft_descent_step(gpu, &descent, photo, 0, &loss), ORL_OK);
+    const size_t values = model->count * ORL_SOFT_VALUES;
+    if (gradient)
+        orl_buf_read(descent.mean, 0, values * sizeof *gradient, gradient);
+    for (size_t i = 0; gradient && i < values; i++)
+        gradient[i] *= 10; // the running mean of one gradient is a tenth of it
+    orl_soft_descent_finish(gpu, &descent);
+    return loss;
+}
+
+static void test_gradient(void **state)
+{
+    (void)state;
+    struct orl_soft_photo photo = photograph(1);
+    struct orl_soft_model model = some_splats();
+    static float gradient[SPLATS][ORL_SOFT_VALUES];
+    double off[ORL_SOFT_VALUES] = {0}, size[ORL_SOFT_VALUES] = {0};
+    loss_of(&model, &photo, gradient[0]);
+    for (int i = 0; i < SPLATS; i++) {
+        for (int k = 0; k < ORL_SOFT_VALUES; k++) {
+            const float step = 1e-2f, value = model.splats[i][k];
+            if (k == ORL_SOFT_PIXEL)
+                continue;
+            model.splats[i][k] = value + step;
+            double above = loss_of(&model, &photo, NULL);
+            model.splats[i][k] = value - step;
+            double below = loss_of(&model, &photo, NULL), slope = (above - below) / (2 * (double)step);
+            model.splats[i][k] = value;
+            off[k] += pow(slope - (double)gradient[i][k], 2);
+            size[k] += slope * slope;
+        }
+    }
+    // What is left is the jumps of opacities that are too small to be drawn, which the gradient leaves out.
+    for (int k = 0; k < ORL_SOFT_VALUES; k++)
+        assert_true(k == ORL_SOFT_PIXEL || sqrt(off[k]) < 0.2 * sqrt(size[k]));
+    orl_image_finish(&photo.color);
+    orl_soft_finish(&model);
+}
+
+// A camera at the origin that looks along z, `divide` times smaller than 64 x 48 pixels.
+static struct orl_view ahead(int divide)
+{
+    return (struct orl_view){.camera = {.width = 64 / divide, .height = 48 / divide, .fx = 64.0 / divide,
+                                        .fy = 64.0 / divide, .cx = 32.5 / divide, .cy = 24.5 / divide},
+                             .cam_from_world = {.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+}
+
+// RGBA of a model in a view.
+static struct orl_image drawn(const struct orl_soft_model *model, const struct orl_view *view, bool smooths)
+{
+    struct orl_soft_raster raster;
+    struct soft_block block;
+    struct orl_image picture;
+    assert_int_equal(orl_soft_raster_init(gpu, model, &raster), ORL_OK);
+    assert_int_equal(orl_soft_raster_draw(gpu, &raster, view, smooths, &block), ORL_OK);
+    assert_int_equal(orl_image_init(NULL, &picture, view->camera.width, view->camera.height, 4, ORL_PIXEL_F32), ORL_OK);
+    orl_tex_read(raster.blended, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&picture), picture.f32);
+    orl_soft_raster_finish(gpu, &raster);
+    return picture;
+}
+
+static const float *pixel(const struct orl_image *picture, int x, int y)
+{
+    return picture->f32 + 4 * ((size_t)y * (size_t)picture->width + (size_t)x);
+}
+
+static void add(struct orl_soft_model *model, double x, double z, double sigma, float opacity, float red, float blue)
+{
+    const double place[3] = {x, 0, z};
+    const float rgb[3] = {red, 0, blue};
+    assert_int_equal(orl_soft_add(NULL, model, place, sigma, opacity, rgb), ORL_OK);
+}
+
+// One splat is a Gaussian of its size, and 0.3 pixels^2 wider; a nearer one covers a farther one.
+static void test_splats_blend(void **state)
+{
+    (void)state;
+    struct orl_soft_model model = {0};
+    const struct orl_view view = ahead(1);
+    add(&model, 0, 4, 0.25, 0.6f, 1, 0); // 4 pixels
+    struct orl_image one = drawn(&model, &view, false);
+    for (int off = 0; off <= 8; off += 4) {
+        double opacity = 0.6 * exp(-0.5 * off * off / (16 + 0.3));
+        assert_float_equal(pixel(&one, 32 + off, 24)[0], opacity, 1e-4);
+        assert_float_equal(pixel(&one, 32, 24 + off)[3], 1 - opacity, 1e-4);
+    }
+    assert_float_equal(pixel(&one, 60, 24)[3], 1, 0);
+    add(&model, 0, 2, 0.125, 0.5f, 0, 1);
+    struct orl_image two = drawn(&model, &view, false);
+    assert_float_equal(pixel(&two, 32, 24)[2], 0.5, 1e-4);
+    assert_float_equal(pixel(&two, 32, 24)[0], 0.5 * 0.6, 1e-4);
+    orl_image_finish(&one);
+    orl_image_finish(&two);
+    orl_soft_finish(&model);
+}
+
+static double covered(const struct orl_soft_model *model, const struct orl_view *view)
+{
+    struct orl_image picture = drawn(model, view, true);
+    double sum = 0;
+    for (int y = 0; y < picture.height; y++)
+        for (int x = 0; x < picture.width; x++)
+            sum += 1 - (double)pixel(&picture, x, y)[3];
+    orl_image_finish(&picture);
+    return sum;
+}
+
+// In a view of fewer pixels a small splat covers the same share of the picture, and in one of more pixels it is not
+// sharper than the photographs.
+static void test_size_of_the_view(void **state)
+{
+    (void)state;
+    struct orl_soft_model model = {0};
+    add(&model, 0, 4, 0.02, 0.6f, 1, 0);
+    model.splats[0][ORL_SOFT_PIXEL] = 2 * 4 / 64.0f; // adjusted at half the size of ahead(1)
+    const struct orl_view whole = ahead(1), half = ahead(2), quarter = ahead(4);
+    double at_whole = covered(&model, &whole), at_half = covered(&model, &half), at_quarter = covered(&model, &quarter);
+    assert_float_equal(at_whole / at_half, 4, 0.4);
+    assert_float_equal(at_half / at_quarter, 4, 0.4);
+    orl_soft_finish(&model);
+}
+
+// A far splat of the wrong colour, size and place, adjusted to a picture of the right one.
+static void test_descent(void **state)
+{
+    (void)state;
+    struct orl_soft_model right = {0}, model = {0};
+    add(&right, 0, 4, 0.4, 0.9f, 0.8f, 0.2f);
+    struct orl_soft_photo photo = {.view = ahead(1)};
+    struct orl_image picture = drawn(&right, &photo.view, false);
+    assert_int_equal(orl_image_init(NULL, &photo.color, 64, 48, 3, ORL_PIXEL_F32), ORL_OK);
+    for (size_t i = 0; i < 64 * 48; i++)
+        memcpy(photo.color.f32 + 3 * i, picture.f32 + 4 * i, 3 * sizeof(float));
+    const struct orl_soft_descent_params params = {.steps = 200};
+    struct orl_soft_descent_report report;
+    add(&model, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
+    double before = loss_of(&model, &photo, NULL);
+    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &model, &report), ORL_OK);
+    assert_int_equal(report.steps, 200);
+    assert_true(loss_of(&model, &photo, NULL) < 0.2 * before);
+    assert_float_equal(model.splats[0][ORL_SOFT_PIXEL], 4 / 64.0, 1e-4);
+
+    // The same again, to the bit; and none of it where the photograph shows what stands before the scene.
+    struct orl_soft_model again = {0}, still = {0};
+    add(&again, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
+    add(&still, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
+    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &again, &report), ORL_OK);
+    assert_memory_equal(model.splats, again.splats, sizeof *model.splats);
+    assert_int_equal(orl_image_init(NULL, &photo.use, 64, 48, 1, ORL_PIXEL_U8), ORL_OK);
+    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &still, &report), ORL_OK);
+    assert_float_equal(still.splats[0][ORL_SOFT_COLOR], (0.3 - 0.5) / 0.28209479, 1e-4);
+    orl_image_finish(&picture);
+    orl_image_finish(&photo.color);
+    orl_image_finish(&photo.use);
+    orl_soft_finish(&right);
+    orl_soft_finish(&model);
+    orl_soft_finish(&again);
+    orl_soft_finish(&still);
+}
+
+// What the splats cover is mixed, what they leave open stays, and light above white is kept.
+static void test_mix(void **state)
+{
+    (void)state;
+    struct orl_tex *blended, *picture;
+    const struct soft_block block = {.view_size = {2, 1}, .mix_share = 0.5f};
+    const float splats[2][4] = {{0.5f, 0.5f, 0.5f, 0}, {0, 0, 0, 1}}, own[2][4] = {{1, 1, 3, 0.25f}, {0.2f, 0.5f, 0.7f, 1}};
+    float mixed[2][4];
+    const struct orl_tex_params params = {.width = 2, .height = 1, .format = GL_RGBA32F, .tag = "test"};
+    assert_int_equal(orl_tex_create(gpu, &params, &blended), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &picture), ORL_OK);
+    orl_tex_write(blended, 0, 0, GL_RGBA, GL_FLOAT, splats);
+    orl_tex_write(picture, 0, 0, GL_RGBA, GL_FLOAT, own);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/mix.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
+        .images = {{blended, 0, GL_READ_ONLY}, {picture, 0, GL_READ_WRITE}}, .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
+    orl_tex_read(picture, 0, GL_RGBA, GL_FLOAT, sizeof mixed, mixed);
+    const double half_way = pow((0.75 + 0.055) / 1.055, 2.4);
+    assert_float_equal(mixed[0][0], half_way, 1e-4);
+    assert_float_equal(mixed[0][2], half_way + 2, 1e-4);
+    assert_float_equal(mixed[0][3], 0.25, 0);
+    for (int c = 0; c < 4; c++)
+        assert_float_equal(mixed[1][c], own[1][c], 1e-4);
+    orl_tex_destroy(gpu, &blended);
+    orl_tex_destroy(gpu, &picture);
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    gpu = gpu_test_device();
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    orl_gpu_destroy(&gpu);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_gradient),
+        cmocka_unit_test(test_splats_blend),
+        cmocka_unit_test(test_size_of_the_view),
+        cmocka_unit_test(test_descent),
+        cmocka_unit_test(test_mix),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
