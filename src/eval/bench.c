@@ -179,6 +179,7 @@ static enum orl_result measure_runs(struct bench_job *job, size_t first, size_t 
     orl_renderer_destroy(&renderer);
     if (result == ORL_OK && run->kind == ORL_BENCH_POINTS)
         result = orl_bench_measure_raster(job, run);
+    job->scene = NULL;
     orl_points_finish(&points);
     free(use);
     return result;

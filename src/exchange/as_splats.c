@@ -52,7 +52,7 @@ static size_t pack(const struct orl_gaussians *g, size_t i, bool thin, float rec
 
 static void write_all(FILE *stream, const struct orl_gaussians *g, bool thin)
 {
-    float record[FLOATS_MAX];
+    float record[FLOATS_MAX] = {0};
     write_header(stream, g, thin);
     for (size_t i = 0; i < g->points->count; i++)
         fwrite(record, sizeof *record, pack(g, i, thin, record), stream);

@@ -212,6 +212,7 @@ ssize_t pwrite64(int fd, const void *data, size_t size, off_t offset)
 size_t fwrite(const void *data, size_t size, size_t items, FILE *stream)
 {
     if (stream != stderr && hits(KIND_WRITE)) {
+        stream->_flags |= _IO_ERR_SEEN; // as the real one does
         errno = ENOSPC;
         return 0;
     }
