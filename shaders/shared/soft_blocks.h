@@ -33,7 +33,7 @@ ORL_BLOCK(soft_block)
     INT(splat_count);
     INT(tiles_across);
     FLOAT(low_pass);    // variance that every splat's projection gains, pixels^2
-    FLOAT(smooths);     // 1: no splat is sharper than the photographs that it was adjusted to; else 0
+    FLOAT(smooths);     // 1: no splat is drawn sharper than the photographs that it was adjusted to; else 0
     FLOAT(mix_share);   // of the splats in the frame's picture
     FLOAT(unused);
 };

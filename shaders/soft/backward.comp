@@ -9,24 +9,17 @@ layout(rgba32f, binding = 1) readonly uniform image2D gradient; // of the loss b
 layout(rgba32f, binding = 5) writeonly uniform imageBuffer shares; // ORL_SOFT_SHARE_VEC4S for each entry of the lists
 
 const int PIXELS = ORL_SOFT_TILE * ORL_SOFT_TILE;
-vec3 by_color[PIXELS];
-float passes[PIXELS], behind[PIXELS]; // behind: what the splats that follow give to the loss's change
 
-vec4 first;   // ORL_SOFT_SHARE_VEC4S
-vec2 second;
-vec3 color_sum;
-
-void take(int i, seen_splat s, vec2 off)
+// What a splat gives to a pixel: its share, and gradient by the exponent of its Gaussian. change: gradient by the
+// pixel's colour; behind: what the splats that follow give to the loss's change.
+vec2 take(seen_splat s, vec2 off, vec3 change, inout float passes, inout float behind)
 {
-    float opacity = passes[i] < PASSES_MIN ? 0.0 : seen_opacity(s, off);
-    float share = passes[i] * opacity, own = dot(by_color[i], s.color);
-    behind[i] -= share * own;
-    float by_opacity = passes[i] * own - behind[i] / (1.0 - opacity);
-    float by_exponent = opacity < OPACITY_MAX ? by_opacity * opacity : 0.0;
-    first += by_exponent * vec4(1.0, off, off.x * off.x);
-    second += by_exponent * off.y * off;
-    color_sum += share * by_color[i];
-    passes[i] -= share;
+    float opacity = passes < PASSES_MIN ? 0.0 : seen_opacity(s, off);
+    float share = passes * opacity, own = dot(change, s.color);
+    behind -= share * own;
+    float by_opacity = passes * own - behind / (1.0 - opacity);
+    passes -= share;
+    return vec2(share, opacity < OPACITY_MAX ? by_opacity * opacity : 0.0);
 }
 
 void main()
@@ -36,21 +29,29 @@ void main()
     if (tile >= tiles)
         return;
     ivec2 origin = ORL_SOFT_TILE * ivec2(tile % tiles_across, tile / tiles_across);
+    vec3 change[PIXELS];
+    float passes[PIXELS], behind[PIXELS];
     for (int i = 0; i < PIXELS; i++) {
         ivec2 at = origin + ivec2(i % ORL_SOFT_TILE, i / ORL_SOFT_TILE);
-        by_color[i] = imageLoad(gradient, at).rgb; // 0 outside
-        behind[i] = dot(by_color[i], imageLoad(blended, at).rgb);
+        vec3 by_color = imageLoad(gradient, at).rgb; // 0 outside
+        change[i] = by_color;
+        behind[i] = dot(by_color, imageLoad(blended, at).rgb);
         passes[i] = 1.0;
     }
     int end = listed_at(tile + 1);
     for (int k = listed_at(tile); k < end; k++) {
         seen_splat s = seen_at(listed_at(k));
         vec2 off = vec2(origin) + 0.5 - s.centre;
-        first = vec4(0.0);
-        second = vec2(0.0);
-        color_sum = vec3(0.0);
-        for (int i = 0; i < PIXELS; i++)
-            take(i, s, off + vec2(i % ORL_SOFT_TILE, i / ORL_SOFT_TILE));
+        vec4 first = vec4(0.0); // ORL_SOFT_SHARE_VEC4S
+        vec2 second = vec2(0.0);
+        vec3 color_sum = vec3(0.0);
+        for (int i = 0; i < PIXELS; i++) {
+            vec2 at = off + vec2(i % ORL_SOFT_TILE, i / ORL_SOFT_TILE);
+            vec2 given = take(s, at, change[i], passes[i], behind[i]);
+            first += given.y * vec4(1.0, at, at.x * at.x);
+            second += given.y * at.y * at;
+            color_sum += given.x * change[i];
+        }
         int to = ORL_SOFT_SHARE_VEC4S * (k - tiles - 1);
         imageStore(shares, to, first);
         imageStore(shares, to + 1, vec4(second, 0.0, 0.0));

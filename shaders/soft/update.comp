@@ -30,12 +30,12 @@ void main()
         return;
     vec4 first = vec4(0.0);
     vec2 second = vec2(0.0);
-    vec3 by_color = vec3(0.0);
+    vec3 color_sum = vec3(0.0);
     for (int k = places[i]; k < places[i + 1]; k++) {
         int from = ORL_SOFT_SHARE_VEC4S * places[k];
         first += imageLoad(shares, from);
         second += imageLoad(shares, from + 1).xy;
-        by_color += imageLoad(shares, from + 2).rgb;
+        color_sum += imageLoad(shares, from + 2).rgb;
     }
     vec4 seen_a = imageLoad(projected, ORL_SOFT_SEEN_VEC4S * i), seen_b = imageLoad(projected, ORL_SOFT_SEEN_VEC4S * i + 1);
     int above = int(imageLoad(projected, ORL_SOFT_SEEN_VEC4S * i + 2).a);
@@ -44,7 +44,7 @@ void main()
     vec3 from_eye = s.position - eye.xyz, p = view_rotation() * from_eye;
 
     // Colour, which changes with the direction.
-    by_color *= vec3(above & 1, above >> 1 & 1, above >> 2 & 1);
+    vec3 by_color = color_sum * vec3(above & 1, above >> 1 & 1, above >> 2 & 1);
     float distance_here = length(from_eye);
     vec3 d = from_eye / distance_here;
     vec3 by_direction = HARMONIC_1 * vec3(-dot(by_color, splat_harmonic(i, 3)), -dot(by_color, splat_harmonic(i, 1)),

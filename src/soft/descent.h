@@ -10,7 +10,7 @@
 struct orl_soft_photo {
     struct orl_view view;
     struct orl_image color; // F32 x3, sRGB at the scene's exposure, [0, 1], as large as the view
-    struct orl_image use;   // U8 x1: 0 where it shows what stands before the scene; no data: nowhere
+    struct orl_image use;   // U8 x1: 0 where it shows what stands before the scene; without data: the whole photograph is used
 };
 
 struct orl_soft_descent_params {
@@ -20,10 +20,9 @@ struct orl_soft_descent_params {
     const struct orl_progress *progress; // NULL: none
 };
 
-// What descent leaves behind beside the model.
 struct orl_soft_descent_report {
-    int steps;         // that were made
-    double loss;       // running mean
+    int steps;   // number of steps that were made
+    double loss; // running mean over the last steps
 };
 
 // Adjusts the model in place. The result is the same for the same seed on the same device.

@@ -22,8 +22,9 @@ struct orl_soft_raster {
 enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
                                      struct orl_soft_raster *raster) ORL_CHECK_RESULT;
 void orl_soft_raster_finish(struct orl_gpu *gpu, struct orl_soft_raster *raster);
-// Draws the view into raster->blended. smooths: no splat is sharper than the photographs that it was adjusted to;
-// descent sets the same by itself. *block: the passes' parameters for this view, for those that follow.
+// Draws the view into raster->blended. smooths: the view is not one of those that the splats are adjusted to, and no
+// splat is drawn sharper than the photographs that it was adjusted to. *block receives the parameters of the passes
+// for this view, which later passes need, too.
 enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
                                      const struct orl_view *view, bool smooths,
                                      struct soft_block *block) ORL_CHECK_RESULT;
