@@ -1,4 +1,4 @@
-// Buffers that are also read as textures.
+// Buffers: what is written to them comes in its turn, and textures show it.
 #include "gpu_test.h"
 
 enum { ROUNDS = 32 };
@@ -74,6 +74,33 @@ static void a_texture_shows_what_was_written_last(void **state)
     orl_gpu_destroy(&gpu);
 }
 
+// Between a clear and what reads the buffer, however much the device has yet to do.
+static void a_write_comes_after_a_clear(void **state)
+{
+    (void)state;
+    struct orl_gpu *gpu = open_device();
+    struct orl_buf *words = NULL;
+    struct orl_tex *work = NULL;
+    const struct orl_tex_params params = {.width = 1024, .height = 1024, .format = GL_RGBA32F, .tag = "work"};
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "words", 4096, NULL, &words), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &work), ORL_OK);
+    for (uint32_t i = 0; i < ROUNDS; i++) {
+        const uint32_t data[4] = {i, 1, 1, 0};
+        uint32_t seen[5];
+        for (int k = 0; k < 4; k++)
+            orl_tex_clear(work, 0);
+        orl_buf_fill(words, 7);
+        orl_buf_write(words, 0, sizeof data, data);
+        orl_buf_read(words, 0, sizeof seen, seen);
+        assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
+        assert_memory_equal(seen, data, sizeof data);
+        assert_int_equal(seen[4], 7);
+    }
+    orl_tex_destroy(gpu, &work);
+    orl_buf_destroy(gpu, &words);
+    orl_gpu_destroy(&gpu);
+}
+
 static int set_up(void **state)
 {
     (void)state;
@@ -95,6 +122,7 @@ int main(void)
     unsetenv("ORIEL_SHADER_DUMP"); // the check of all shaders knows those of the program
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_texture_shows_what_was_written_last, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_write_comes_after_a_clear, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("buffers", tests, NULL, NULL);
 }
