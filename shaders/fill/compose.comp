@@ -1,7 +1,7 @@
 // Makes the finished frame: the blended colour, or the filled colour where no sample was blended.
 // One invocation handles 2x2 pixels.
 // FINISHED: the painter has finished all pixels but those that are unpainted or lie on estimated
-// background depth, and has listed their work groups.
+// background depth, and has marked their work groups.
 // RADIANCE: colour on estimated depth is blurred where `trusted` asks for it.
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
@@ -48,9 +48,13 @@ vec3 softened(ivec2 at, vec3 sharp, float blur)
 }
 #endif
 
-void compose(uvec2 group)
+void main()
 {
-    ivec2 parent = ivec2(group * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy);
+#ifdef FINISHED
+    if (unfinished_groups[unfinished_group()] == 0u)
+        return;
+#endif
+    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
     if (2 * parent.x >= image_size.x || 2 * parent.y >= image_size.y)
         return;
     vec4 finer[4];
@@ -81,19 +85,4 @@ void compose(uvec2 group)
                    pixel_finished(own, on_surface && (weight > 0.0 || points_show == 1)));
 #endif
     }
-}
-
-void main()
-{
-#ifdef FINISHED
-    uint row = uint(image_size.x + 2 * ORL_PIXEL_GROUP_X - 1) / (2 * ORL_PIXEL_GROUP_X);
-    uint place = gl_WorkGroupID.x;
-    do {
-        uint number = unfinished_groups[place];
-        compose(uvec2(number % row, number / row));
-        place += UNFINISHED_DISPATCH_MAX;
-    } while (place < unfinished_count);
-#else
-    compose(gl_WorkGroupID.xy);
-#endif
 }

@@ -16,10 +16,15 @@ vec3 splat_camera_vector(vec3 d)
 }
 
 // Subtracts the eye first, so that the difference is exact for points near the eye. corner: of the
-// point's block, and its step.
+// point's block, and its step. splat_index.comp compares the depth with that of splat_depth.comp: `precise`
+// makes it the same in both programs.
 vec3 splat_camera_position(uvec2 code, vec4 corner)
 {
-    return splat_camera_vector(corner.xyz - eye.xyz + corner.w * point_steps(code));
+    precise vec3 from_eye = corner.xyz - eye.xyz + corner.w * point_steps(code);
+    precise vec3 p = vec3(rotation[0].x, rotation[1].x, rotation[2].x) * from_eye.x +
+                     vec3(rotation[0].y, rotation[1].y, rotation[2].y) * from_eye.y +
+                     vec3(rotation[0].z, rotation[1].z, rotation[2].z) * from_eye.z;
+    return p;
 }
 
 // Projects a camera-space position into the picture; false outside it.

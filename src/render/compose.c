@@ -40,7 +40,6 @@ static void compose(const struct frame *frame)
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[2] = {.buf = unfinished}},
                              .textures = {frame->paint->soften.guesses},
-                             .indirect = unfinished,
                              .images = {{frame->picture, 0, GL_READ_WRITE},
                                         {frame->paint->fill.level[0], 0, GL_READ_ONLY},
                                         {frame->surface.depth, 0, GL_READ_ONLY},

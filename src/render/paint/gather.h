@@ -14,7 +14,7 @@ struct gather {
     struct orl_buf *photos;     // the same on the device
     struct orl_tex *photo_rows; // view of `photos` as RGBA32F texels
     struct orl_buf *tile_lists; // listed photographs of each tile
-    struct orl_buf *unfinished; // list of the last tiled painter: gather/unfinished.glsl
+    struct orl_buf *unfinished; // marks of the last tiled painter: gather/unfinished.glsl
     char *options;              // owned: defines RENDER_OPTIONS (render_blocks.h)
 };
 

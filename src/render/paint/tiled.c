@@ -7,21 +7,18 @@
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 
-// Makes room for the lists of photographs of each tile and of unfinished work groups.
+// Makes room for the lists of photographs of each tile and for the marks of unfinished work groups.
 static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
 {
-    static const uint32_t nothing[4] = {0, 1, 1, 0}; // shaders/gather/unfinished.glsl
     struct gather *g = &frame->paint->gather;
     enum orl_result result = orl_make_room(frame->gpu, "photographs of tiles",
                                            tiles * CANDIDATES * sizeof(int), &g->tile_lists);
     if (result == ORL_OK)
-        result = orl_make_room(frame->gpu, "groups with unfinished pixels",
-                               sizeof nothing + 8 * groups, &g->unfinished);
-    if (result != ORL_OK)
-        return result;
-    orl_buf_fill(g->unfinished, 0);
-    orl_buf_write(g->unfinished, 0, sizeof nothing, nothing);
-    return ORL_OK;
+        result = orl_make_room(frame->gpu, "groups with unfinished pixels", groups * sizeof(uint32_t),
+                               &g->unfinished);
+    if (result == ORL_OK)
+        orl_buf_fill(g->unfinished, 0);
+    return result;
 }
 
 // For the passes that ask photographs. Without a backdrop that rests they lose no time.
@@ -42,8 +39,7 @@ static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatc
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
     d.images[3] = (struct orl_image_binding){frame->paint->soften.guesses, 0, GL_WRITE_ONLY};
-    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                GL_COMMAND_BARRIER_BIT;
+    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
     orl_tex_clear(frame->paint->soften.guesses, 0);
