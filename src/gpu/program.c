@@ -1,4 +1,5 @@
 // Programs, looked up by a key, and compute dispatch.
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -250,9 +251,7 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
     }
     if (d->barrier)
         glMemoryBarrier(d->barrier);
-    if (glGetError() != GL_NO_ERROR) {
-        orl_logf(gpu->log, ORL_LOG_ERROR, "shaders/%.*s: dispatch failed",
-                 (int)strcspn(d->prog->key, "\n"), d->prog->key);
-        gpu->failed = true;
-    }
+    char file[96]; // that the key begins with
+    snprintf(file, sizeof file, "%.*s", (int)strcspn(d->prog->key, "\n"), d->prog->key);
+    orl_gpu_check_errors(gpu, file);
 }

@@ -75,7 +75,8 @@ static void draw_near(const struct point *list, size_t count, const struct orl_v
     assert_int_equal(orl_proxy_draw(gpu, &proxy, view, &params, false, &proxy.view_target, &surface),
                      ORL_OK);
     orl_tex_read(surface.depth, 0, GL_RED, GL_FLOAT, sizeof without_normals, without_normals);
-    assert_memory_equal(without_normals, out->depth, sizeof out->depth);
+    for (int i = 0; i < SIDE * SIDE; i++) // compilers round two programs differently
+        assert_float_equal(without_normals[i], out->depth[i], 1e-6 * out->depth[i]);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     orl_proxy_finish(gpu, &proxy);
     orl_points_finish(&points);
