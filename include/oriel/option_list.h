@@ -92,7 +92,7 @@
         "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
     NUMBER(soft, 0, 0, 1, "share", "sample=srgb", ORL_NO_TRIES, \
         "How much of the picture comes from the scene's soft splats (`oriel refine`), as far as they " \
-        "cover it. They mend what stereo cannot see; 0.3 is a good share.") \
+        "cover it. They mend what stereo cannot see, and `oriel refine` finds a good share.") \
     NUMBER(hull_side, 64, 8, 512, "voxels", "proxy=voxels proxy=hull", ORL_NO_TRIES, \
         "How many voxels the cube around the subject has each way. Time and memory of making " \
         "the hull grow with the third power.")

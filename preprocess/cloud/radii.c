@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "scene/manifest.h"
 #include "scene/point_lod.h"
 #include "scene/point_stream.h"
 
@@ -72,6 +73,7 @@ static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_p
     ORL_THEN(result, orl_points_write(job->log, out, &points, false));
     if (result == ORL_OK)
         result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
+    ORL_THEN(result, orl_job_remove(job, ORL_SOFT_NAME)); // likewise
     *left = points.count;
     orl_points_finish(&points);
     free(out);

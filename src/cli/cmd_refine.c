@@ -13,19 +13,33 @@
     ROW(seed, "seed", INT(1, 0, 1000000, "N"), "of all random choices")
 COMMAND_OPTIONS(refine_options, REFINE_OPTIONS)
 
+static void print(const struct orl_refine_report *r)
+{
+    printf("%zu splats, of %zu from points and %zu far ones; %d steps on %zu photographs, loss %.4f\n", r->splats,
+           r->points, r->far, r->steps, r->photographs, r->loss);
+    printf("%zu photographs that they had not seen, each drawn without itself: %.3f dB without splats", r->checks,
+           r->before_psnr_db);
+    if (r->share > 0)
+        printf(", %.3f with --set soft=%.2g%s\n", r->psnr_db, r->share,
+               r->kept ? ", which the scene takes from now on" : "");
+    else
+        printf(", which no share of them betters: the scene is drawn without\n");
+}
+
 static enum orl_result run_refine(struct call *call)
 {
     const struct refine_options *o = call->options;
     struct orl_refine_report report = {0};
-    const struct orl_refine_params params = {
+    struct orl_refine_params params = {
         .size_divide = o->size_divide, .steps = o->steps, .splats = o->splats, .budget_s = o->budget_s,
         .seed = (uint64_t)o->seed, .progress = call->progress};
     enum orl_result result = command_scene(call, NULL);
+    ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0},
+                                     &params.choice));
     ORL_THEN(result, command_device(call));
     ORL_THEN(result, orl_refine(call->gpu, call->scene, &params, &report));
     if (result == ORL_OK)
-        printf("%zu splats, of %zu from points and %zu far ones; %d steps on %zu photographs, loss %.4f\n",
-               report.splats, report.points, report.far, report.steps, report.photographs, report.loss);
+        print(&report);
     return result;
 }
 
@@ -34,7 +48,8 @@ const struct command command_refine = {
     .brief = "adjust soft splats to a scene's photographs",
     .usage = "SCENE [options]",
     .summary = "Makes SCENE/soft.ply: ellipsoids of soft opacity that begin at the scene's points and are\n"
-               "adjusted by descent on its training photographs. --set soft=0.3 mixes them into a picture,\n"
-               "where they mend what stereo cannot see. Held-out photographs take no part.",
+               "adjusted by descent on its training photographs. They mend what stereo cannot see. How much of\n"
+               "them pictures take is found on photographs that they have not seen, and kept in scene.json;\n"
+               "--set soft=0 draws without them. Held-out photographs take no part.",
     COMMAND_TABLE(refine_options), .inputs_min = 1, .inputs_max = 1, .run = run_refine,
 };

@@ -71,6 +71,7 @@ static enum orl_result run_trim(struct call *call)
     struct orl_trim trim = {0};
     enum orl_result result = command_scene(call, NULL);
     ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start));
+    start.params.soft = 0; // soft splats have seen the photographs that decide
     ORL_THEN(result, command_device(call));
     const struct orl_trim_params params = {
         .start = &start, .out = o->out, .tolerance_db = o->tolerance_db,

@@ -6,9 +6,11 @@
 
 #include "core/color.h"
 #include "core/memory.h"
-#include "eval/heldout.h"
+#include "eval/score.h"
 #include "io/picture.h"
+#include "scene/manifest.h"
 #include "scene/meter.h"
+#include "scene/tuned_settings.h"
 #include "soft/descent.h"
 #include "soft/soft_ply.h"
 
@@ -16,8 +18,12 @@
 // pixel is open if more than OPEN of it passes all splats of points. They lie at NEAR_FROM to FAR_TO of the
 // depth within which FAR_SHARE of the view's splats are.
 enum { GRID = 4, FAR_VIEWS = 3 };
-// With so many training photographs held-out ones gain, with half as many they lose (docs/how/oriel.md).
-enum { FEW = 16 };
+// One of CHECKED photographs, at least CHECKS_MIN of them, or one of two, and at most CHECKS_MAX, waits for the last
+// third of the steps, so that the share of the splats can be found on what they have not seen.
+enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
+static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
+static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f};
+static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 
@@ -25,8 +31,8 @@ struct refine {
     const struct orl_log *log;
     const struct orl_scene *scene;
     const struct orl_refine_params *params;
-    struct orl_soft_photo *photos; // owned
-    size_t count;
+    struct orl_soft_photo *photos; // owned: those that are not checks first
+    size_t count, checks;
     struct orl_soft_model model;   // owned
 };
 
@@ -75,22 +81,16 @@ static enum orl_result read_photo(const struct refine *r, size_t photo, struct o
     return result;
 }
 
-static enum orl_result read_photos(struct refine *r)
+static enum orl_result read_photos(struct refine *r, bool checks)
 {
-    r->photos = orl_array(r->log, r->scene->photo_count, sizeof *r->photos);
-    enum orl_result result = r->photos ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < r->scene->photo_count; i++) {
-        if (r->scene->photos[i].test)
+        if (r->scene->photos[i].test || orl_heldout_chosen(r->scene, false, r->checks, i) != checks)
             continue;
         result = read_photo(r, i, &r->photos[r->count++]);
-        orl_progress_report(r->params->progress, "photographs", (double)(i + 1), (double)r->scene->photo_count,
+        orl_progress_report(r->params->progress, "photographs", (double)r->count, (double)r->scene->photo_count,
                             r->scene->photos[i].name);
     }
-    if (result == ORL_OK && r->count == 0)
-        return orl_fail(r->log, ORL_ERR_DATA, "every photograph is held out");
-    if (result == ORL_OK && r->count < FEW)
-        orl_logf(r->log, ORL_LOG_WARNING, "%zu photographs are few: soft splats fit them, and not what lies between",
-                 r->count);
     return result;
 }
 
@@ -150,6 +150,57 @@ static enum orl_result add_all_far(struct refine *r, struct orl_gpu *gpu)
     return result;
 }
 
+// --- how much of them ---
+
+// The share with which the checks come out best, of those that are better than none at all.
+static enum orl_result find_share(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+{
+    struct orl_validation checks = {0};
+    struct orl_renderer *renderer = NULL;
+    struct orl_score none = {0};
+    struct orl_render_params render = r->params->choice.params;
+    enum orl_result result = orl_validation_load(r->log, r->scene, r->checks, r->params->size_divide, &checks);
+    ORL_THEN(result, orl_renderer_create(gpu, r->scene, NULL, &renderer));
+    render.soft = 0;
+    ORL_THEN(result, orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &none));
+    report->checks = checks.count;
+    report->psnr_db = report->before_psnr_db = none.psnr_db;
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(SHARES); i++) {
+        struct orl_score score = {0};
+        render.soft = SHARES[i];
+        result = orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &score);
+        if (result == ORL_OK && score.psnr_db > report->psnr_db && orl_score_better(&score, &none, GAIN_DB)) {
+            report->share = (double)SHARES[i];
+            report->psnr_db = score.psnr_db;
+        }
+        orl_score_finish(&score);
+    }
+    orl_score_finish(&none);
+    orl_renderer_destroy(&renderer);
+    orl_validation_finish(&checks);
+    return result;
+}
+
+// Keeps the share beside what is tuned.
+static enum orl_result keep_share(const struct refine *r, struct orl_refine_report *report)
+{
+    const struct orl_choice *choice = &r->params->choice;
+    struct orl_render_params render = choice->params;
+    char *path = orl_format(r->log, "%s/scene.json", r->scene->dir);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    report->kept = path && orl_path_is_file(path);
+    render.soft = (float)report->share;
+    if (report->kept)
+        result = orl_tuned_write(r->log, r->scene->dir, choice->method->name,
+                                 json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
+                                           orl_choice_settings(choice->method, &render), "before_psnr_db",
+                                           report->before_psnr_db, "psnr_db", report->psnr_db, "photographs",
+                                           (json_int_t)report->checks, "size_divide", r->params->size_divide,
+                                           "complete", true));
+    free(path);
+    return result;
+}
+
 // --- the whole ---
 
 static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
@@ -165,20 +216,43 @@ static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_r
     return ORL_OK;
 }
 
-static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+// A part of the descent, on the photographs that have been read, and its splats as SCENE/soft.ply.
+static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, double part, double first_size,
+                               struct orl_refine_report *report)
 {
     struct orl_soft_descent_report made = {0};
-    ORL_TRY(read_photos(r));
+    const struct orl_soft_descent_params params = {
+        .steps = (int)ceil(part * r->params->steps * (double)r->count), .first_size = first_size,
+        .seed = r->params->seed, .budget_s = part * r->params->budget_s, .progress = r->params->progress};
+    char *path = orl_format(r->log, "%s/%s", r->scene->dir, ORL_SOFT_NAME);
+    enum orl_result result = path ? orl_soft_descend(gpu, r->photos, r->count, &params, &r->model, &made)
+                                  : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        orl_soft_drop(&r->model, FADED);
+        report->splats = r->model.count;
+        report->steps += made.steps;
+        report->loss = made.loss;
+        result = orl_soft_write(r->log, path, &r->model);
+    }
+    free(path);
+    return result;
+}
+
+static enum orl_result run(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+{
+    size_t train;
+    ORL_TRY(orl_validation_check(r->log, r->scene, &train));
+    r->checks = (size_t)fmin(fmin(fmax((double)(train / CHECKED), CHECKS_MIN), (double)(train / 2)), CHECKS_MAX);
+    if (!(r->photos = orl_array(r->log, train, sizeof *r->photos)))
+        return ORL_ERR_MEMORY;
+    ORL_TRY(read_photos(r, false));
     ORL_TRY(start(r, gpu, report));
-    const struct orl_soft_descent_params params = {.steps = r->params->steps * (int)r->count, .seed = r->params->seed,
-                                                   .budget_s = r->params->budget_s, .progress = r->params->progress};
-    ORL_TRY(orl_soft_descend(gpu, r->photos, r->count, &params, &r->model, &made));
-    orl_soft_drop(&r->model, FADED);
+    ORL_TRY(descend(r, gpu, FIRST_PART, 1, report));
+    ORL_TRY(find_share(r, gpu, report));
+    ORL_TRY(read_photos(r, true));
+    ORL_TRY(descend(r, gpu, 1 - FIRST_PART, LAST_FIRST_SIZE, report));
     report->photographs = r->count;
-    report->splats = r->model.count;
-    report->steps = made.steps;
-    report->loss = made.loss;
-    return ORL_OK;
+    return keep_share(r, report);
 }
 
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
@@ -186,15 +260,12 @@ enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, c
 {
     struct refine r = {.log = orl_gpu_log(gpu), .scene = scene, .params = params};
     *report = (struct orl_refine_report){0};
-    char *path = orl_format(r.log, "%s/%s", scene->dir, ORL_SOFT_NAME);
-    enum orl_result result = path ? descend(&r, gpu, report) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_soft_write(r.log, path, &r.model));
+    enum orl_result result = run(&r, gpu, report);
     for (size_t i = 0; i < r.count; i++) {
         orl_image_finish(&r.photos[i].color);
         orl_image_finish(&r.photos[i].use);
     }
     free(r.photos);
     orl_soft_finish(&r.model);
-    free(path);
     return result;
 }

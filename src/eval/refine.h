@@ -1,8 +1,9 @@
 // Makes a scene's soft splats: from its points and far ones where there are none, by descent on its training
-// photographs.
+// photographs; and finds how much of them its pictures take.
 #ifndef ORL_EVAL_REFINE_H
 #define ORL_EVAL_REFINE_H
 
+#include "eval/choice.h"
 #include "oriel/gpu.h"
 #include "oriel/progress.h"
 #include "oriel/scene.h"
@@ -13,6 +14,7 @@ struct orl_refine_params {
     double splats;       // about how many stand for the points; each pixel of photographs has at most one
     double budget_s;     // 0: any
     uint64_t seed;
+    struct orl_choice choice; // the method and options with which pictures are drawn
     const struct orl_progress *progress;
 };
 
@@ -20,10 +22,15 @@ struct orl_refine_report {
     size_t photographs, points, far, splats; // from points, far ones, and how many stayed
     int steps;
     double loss; // running mean over the last photographs
+    // On photographs that the splats had not seen until then, each drawn without itself:
+    size_t checks;                 // how many
+    double share;                  // of the splats with which they came out best (opt.soft)
+    double psnr_db, before_psnr_db; // means with that share, and with none
+    bool kept;                     // in scene.json; false: the folder has none
 };
 
-// Writes SCENE/soft.ply. Held-out photographs take no part. ORL_ERR_DATA: the scene has no points or no training
-// photographs.
+// Writes SCENE/soft.ply, and the share to scene.json. Held-out photographs take no part. ORL_ERR_DATA: the scene has
+// no points, or fewer than three training photographs.
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
                            struct orl_refine_report *report) ORL_CHECK_RESULT;
 

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "scene/manifest.h"
 #include "soft/soft_ply.h"
 
 bool orl_soft_layer_shows(const struct frame *frame)
@@ -18,7 +19,7 @@ static enum orl_result load(const struct frame *frame, struct soft_layer *layer)
     char *path = orl_format(log, "%s/%s", frame->scene->dir, ORL_SOFT_NAME);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (path && !orl_path_is_file(path))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it", path, frame->scene->dir);
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws without", path, frame->scene->dir);
     ORL_THEN(result, orl_soft_read(log, path, &model));
     ORL_THEN(result, orl_soft_raster_init(frame->gpu, &model, &layer->raster));
     orl_soft_finish(&model);

@@ -8,7 +8,7 @@
 #include "core/process.h"
 #include "soft/loss.h"
 
-static const double LAST_DECAY = 0.1; // factor on the step sizes, which falls to this from 1
+static const double LAST_SIZE = 0.1; // factor on the step sizes of the last step
 static const double LOSS_SMOOTHED = 0.98; // of the running mean
 
 enum orl_result orl_soft_descent_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
@@ -128,7 +128,8 @@ static enum orl_result run(struct orl_gpu *gpu, struct orl_soft_descent *d, cons
             return ORL_ERR_CANCELLED;
         if ((size_t)s % count == 0)
             shuffle(order, count, &state);
-        double loss, decay = pow(LAST_DECAY, (double)(s + 1) / params->steps);
+        double loss, share = (double)(s + 1) / params->steps;
+        double decay = pow(params->first_size, 1 - share) * pow(LAST_SIZE, share);
         ORL_TRY(orl_soft_descent_step(gpu, d, &photos[order[(size_t)s % count]], (float)decay, &loss));
         report->loss = s ? LOSS_SMOOTHED * report->loss + (1 - LOSS_SMOOTHED) * loss : loss;
         report->steps = s + 1;

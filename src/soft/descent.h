@@ -15,6 +15,7 @@ struct orl_soft_photo {
 
 struct orl_soft_descent_params {
     int steps;
+    double first_size; // factor on the step sizes of the first step, [0.1, 1]; that of the last one is 0.1
     uint64_t seed;     // of the order of the photographs
     double budget_s;   // no step begins after so long; 0: any
     const struct orl_progress *progress; // NULL: none

@@ -6,7 +6,6 @@
 
 #include "soft/model.h"
 
-#define ORL_SOFT_NAME "soft.ply" // of the file in a scene
 
 enum orl_result orl_soft_write(const struct orl_log *log, const char *path,
                                const struct orl_soft_model *model) ORL_CHECK_RESULT;

@@ -17,7 +17,9 @@ grep -q 'soft.ply: missing; oriel refine' stderr.txt || fail "not said what make
 
 refine=("$oriel" refine ws --steps 10 --splats 3000 --size-divide 2)
 runs 0 "${refine[@]}"
-grep -q "; 40 steps on 4 photographs, loss" stdout.txt || fail "other steps or photographs"
+grep -q "; 28 steps on 4 photographs, loss" stdout.txt || fail "other steps or photographs" # 7 each on 2, 4 on 4
+# Few photographs: what lies between them is not fitted.
+grep -q "^2 photographs that .*, which no share of them betters: " stdout.txt || fail "splats of four photographs are taken"
 [ -s ws/soft.ply ] || fail "no soft.ply"
 cp ws/soft.ply first.ply
 runs 0 "${refine[@]}"
@@ -35,4 +37,20 @@ grep -q '"soft splats"' bench.json || fail "their pass is not timed"
 head -c 300 first.ply >ws/soft.ply
 picture 2 0.3 none.png
 grep -q 'soft.ply' stderr.txt || fail "a damaged file is not named"
+
+# Many photographs: a share is found, kept, and taken without being asked for. A trimmed scene has no splats.
+rm -r ws photos photos-truth
+workspace 20 || exit 77
+bash "$source/tests/bench/truth_cloud" photos-truth 8 >ws/fused.ply || exit 1
+scene train train train train train train train train train train train train train train train train train train train test
+runs 0 "$oriel" refine ws --splats 20000
+grep -q '^3 photographs that .* with --set soft=0\.[0-9]*, which the scene takes from now on$' stdout.txt || fail "no share"
+share=$(jq .tuned.oriel.settings.soft ws/scene.json)
+runs 0 "$oriel" render ws --at "${names[1]}" --quiet --out tuned.png
+picture 0 "$share" set.png
+picture 0 0 own.png
+cmp -s tuned.png set.png || fail "the share is not taken"
+cmp -s own.png tuned.png && fail "the share changes nothing"
+runs 0 "$oriel" trim ws --out small --budget 1 --views 2 --quiet
+runs 0 "$oriel" render small --at "${names[1]}" --quiet --out small.png
 exit $failed

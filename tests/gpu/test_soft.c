@@ -181,7 +181,7 @@ static void test_descent(void **state)
     assert_int_equal(orl_image_init(NULL, &photo.color, 64, 48, 3, ORL_PIXEL_F32), ORL_OK);
     for (size_t i = 0; i < 64 * 48; i++)
         memcpy(photo.color.f32 + 3 * i, picture.f32 + 4 * i, 3 * sizeof(float));
-    const struct orl_soft_descent_params params = {.steps = 200};
+    const struct orl_soft_descent_params params = {.steps = 200, .first_size = 1};
     struct orl_soft_descent_report report;
     add(&model, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
     double before = loss_of(&model, &photo, NULL);
