@@ -24,6 +24,7 @@ enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
 static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f};
 static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
+static const double PIXELS_OF_SPLAT = 6; // of photographs, at least: twice as many splats make pictures no better
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 
@@ -206,7 +207,11 @@ static enum orl_result keep_share(const struct refine *r, struct orl_refine_repo
 static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
 {
     const struct orl_points *points = &r->scene->points;
-    const double every = fmax(1, (double)points->count / r->params->splats);
+    double pixels = 0; // of all training photographs
+    for (size_t i = 0; i < r->count; i++)
+        pixels += (double)r->photos[i].color.width * r->photos[i].color.height *
+                  (double)(r->count + r->checks) / (double)r->count;
+    const double every = fmax(1, (double)points->count / fmin(r->params->splats, pixels / PIXELS_OF_SPLAT));
     ORL_TRY(orl_soft_from_points(r->log, points, every, r->params->seed, &r->model));
     if (r->model.count == 0)
         return orl_fail(r->log, ORL_ERR_DATA, "the scene has no points to make splats of");

@@ -11,7 +11,7 @@
 struct orl_refine_params {
     int size_divide;     // photographs are used at 1/n of their size, [1, 16]
     int steps;           // per photograph
-    double splats;       // about how many stand for the points; each pixel of photographs has at most one
+    double splats;       // that stand for the points, at most; there are fewer for few or small photographs
     double budget_s;     // 0: any
     uint64_t seed;
     struct orl_choice choice; // the method and options with which pictures are drawn
