@@ -85,7 +85,9 @@ grep -q patch_match_stereo "$work/trace" || fail "--keep all made no depth maps"
 # usual values are those without the options.
 sum=$(md5sum <"$scene/points.ply")
 : >"$work/trace"
+echo "of the points before" >"$scene/soft.ply"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --keep all --radius-overlap 2
+[ -e "$scene/soft.ply" ] && fail "soft splats of other points stay"
 says "fuse: done already"
 grep -q "radii: done already" "$work/err" && fail "radii of another overlap were kept"
 [ "$(md5sum <"$scene/points.ply")" = "$sum" ] && fail "--radius-overlap changes nothing"
