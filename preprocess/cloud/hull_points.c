@@ -259,11 +259,10 @@ static enum orl_result make_surface(const struct orl_log *log, const struct orl_
     ORL_TRY_MEMORY(field);
     for (size_t i = 0; i < count; i++)
         field[i] = hull->inside[i];
-    for (size_t a = 0; a < side; a++)
-        for (size_t b = 0; b < side; b++) {
-            smooth_line(field + side * (a + side * b), 1, cube->side);
-            smooth_line(field + a + side * side * b, side, cube->side);
-        }
+    for (size_t a = 0; a < side * side; a++)
+        smooth_line(field + side * a, 1, cube->side);
+    for (size_t a = 0; a < side * side; a++)
+        smooth_line(field + a % side + side * side * (a / side), side, cube->side);
     for (size_t a = 0; a < side * side; a++)
         smooth_line(field + a, side * side, cube->side);
     for (size_t i = 0; i < count; i++)

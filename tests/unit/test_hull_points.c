@@ -109,13 +109,19 @@ static void the_open_part_is_closed(void **state)
     size_t before = f->points.count, first = close_points(f);
     assert_int_equal(first, before);
     assert_true(f->points.count > first + 500);
+    double sum[2] = {0};
     for (size_t i = first; i < f->points.count; i++) {
         const float *p = f->points.position[i], *n = f->points.normal[i];
         double from = distance(p, 0, 0, 0);
+        sum[0] += (double)p[0];
+        sum[1] += (double)p[1];
         // The hull of these cameras reaches 9 % past the ball at most, and voxels are 0.06 wide.
         assert_true(from > 0.94 && from < 1.15);
         assert_true((double)(p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) > 0.8 * from);
     }
+    // Mirrored at x = 0 or at y = 0, ball and cameras are the same.
+    assert_float_equal(sum[0], 0, 1e-3);
+    assert_float_equal(sum[1], 0, 1e-3);
     for (int k = 0; k < 24; k++) {
         double nearest = INFINITY, turn = TAU * k / 24, up = -0.6 - 0.03 * k;
         for (size_t i = first; i < f->points.count; i++)
