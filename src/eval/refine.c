@@ -207,10 +207,10 @@ static enum orl_result keep_share(const struct refine *r, struct orl_refine_repo
 static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
 {
     const struct orl_points *points = &r->scene->points;
-    double pixels = 0; // of all training photographs
+    double pixels = 0;
     for (size_t i = 0; i < r->count; i++)
-        pixels += (double)r->photos[i].color.width * r->photos[i].color.height *
-                  (double)(r->count + r->checks) / (double)r->count;
+        pixels += (double)r->photos[i].color.width * r->photos[i].color.height;
+    pixels *= (double)(r->count + r->checks) / (double)r->count; // those that wait are as large
     const double every = fmax(1, (double)points->count / fmin(r->params->splats, pixels / PIXELS_OF_SPLAT));
     ORL_TRY(orl_soft_from_points(r->log, points, every, r->params->seed, &r->model));
     if (r->model.count == 0)
