@@ -73,7 +73,6 @@ static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_p
     ORL_THEN(result, orl_points_write(job->log, out, &points, false));
     if (result == ORL_OK)
         result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
-    ORL_THEN(result, orl_job_remove(job, ORL_SOFT_NAME)); // likewise
     *left = points.count;
     orl_points_finish(&points);
     free(out);
@@ -118,6 +117,7 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
                  (unsigned long long)most);
     ORL_THEN(result, fused > most ? write_levels(job, &params, &viewers, in, &left)
                                   : write_whole(job, &params, &viewers, in, &left));
+    ORL_THEN(result, orl_job_remove(job, ORL_SOFT_NAME)); // soft splats of the points before these
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     json_object_set_new(record, "tool", json_string("FLANN"));

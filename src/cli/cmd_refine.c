@@ -23,7 +23,7 @@ static void print(const struct orl_refine_report *r)
         printf(", %.3f with --set soft=%.2g%s\n", r->psnr_db, r->share,
                r->kept ? ", which the scene takes from now on" : "");
     else
-        printf(", which no share of them betters: the scene is drawn without\n");
+        printf(", and no better with any share of them: the scene is drawn without\n");
 }
 
 static enum orl_result run_refine(struct call *call)

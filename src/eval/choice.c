@@ -62,6 +62,14 @@ json_t *orl_choice_settings(const struct orl_method *method,
     return settings;
 }
 
+json_t *orl_choice_record(const struct orl_choice *choice, double before_psnr_db, double psnr_db, size_t photographs,
+                          int size_divide, bool complete)
+{
+    return json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
+                     orl_choice_settings(choice->method, &choice->params), "before_psnr_db", before_psnr_db, "psnr_db",
+                     psnr_db, "photographs", (json_int_t)photographs, "size_divide", size_divide, "complete", complete);
+}
+
 static enum orl_result add(const struct orl_log *log, const struct orl_choice *choice,
                            struct orl_choices *choices)
 {

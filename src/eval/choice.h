@@ -31,6 +31,11 @@ enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scen
 json_t *orl_choice_settings(const struct orl_method *method,
                             const struct orl_render_params *params);
 
+// How good a choice was on photographs: the value for a method in "tuned" of scene.json. before_psnr_db, psnr_db: means
+// over the photographs without what was found, and with it; complete: no limit of time ended the search. A new reference.
+json_t *orl_choice_record(const struct orl_choice *choice, double before_psnr_db, double psnr_db, size_t photographs,
+                          int size_divide, bool complete);
+
 struct orl_choices {
     struct orl_choice *items; // owned
     size_t count, capacity;

@@ -185,19 +185,15 @@ static enum orl_result find_share(struct refine *r, struct orl_gpu *gpu, struct 
 // Keeps the share beside what is tuned.
 static enum orl_result keep_share(const struct refine *r, struct orl_refine_report *report)
 {
-    const struct orl_choice *choice = &r->params->choice;
-    struct orl_render_params render = choice->params;
+    struct orl_choice choice = r->params->choice;
     char *path = orl_format(r->log, "%s/scene.json", r->scene->dir);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     report->kept = path && orl_path_is_file(path);
-    render.soft = (float)report->share;
+    choice.params.soft = (float)report->share;
     if (report->kept)
-        result = orl_tuned_write(r->log, r->scene->dir, choice->method->name,
-                                 json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
-                                           orl_choice_settings(choice->method, &render), "before_psnr_db",
-                                           report->before_psnr_db, "psnr_db", report->psnr_db, "photographs",
-                                           (json_int_t)report->checks, "size_divide", r->params->size_divide,
-                                           "complete", true));
+        result = orl_tuned_write(r->log, r->scene->dir, choice.method->name,
+                                 orl_choice_record(&choice, report->before_psnr_db, report->psnr_db, report->checks,
+                                                   r->params->size_divide, true));
     free(path);
     return result;
 }

@@ -186,11 +186,8 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
 
 json_t *orl_search_record(const struct orl_search *s)
 {
-    return json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
-                     orl_choice_settings(s->best.method, &s->best.params), "before_psnr_db",
-                     s->trials[0].psnr_db, "psnr_db", s->score.psnr_db, "photographs",
-                     (json_int_t)s->validation.count, "size_divide", s->params.size_divide,
-                     "complete", s->complete);
+    return orl_choice_record(&s->best, s->trials[0].psnr_db, s->score.psnr_db, s->validation.count,
+                             s->params.size_divide, s->complete);
 }
 
 enum orl_result orl_search_write_json(const struct orl_log *log, const char *path, const char *device,

@@ -94,7 +94,7 @@ static void too_little_memory_is_an_error_with_advice(void **state)
     struct orl_buf *buf;
     messages[0] = '\0';
     enum orl_result made = orl_tex_create(gpu, &params, &tex);
-    if (made == ORL_OK) { // NVIDIA's 580 looks for the memory of textures when they are first used, for minutes
+    if (made == ORL_OK) { // NVIDIA's 580 looks for the memory when a texture is first used, and takes long
         orl_tex_destroy(gpu, &tex);
         orl_gpu_destroy(&gpu);
         skip();
