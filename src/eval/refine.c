@@ -200,17 +200,32 @@ static enum orl_result keep_share(const struct refine *r, struct orl_refine_repo
 
 // --- the whole ---
 
-static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+// Without points, splats begin on the scene's mesh.
+static enum orl_result begin(struct refine *r, double most)
 {
     const struct orl_points *points = &r->scene->points;
+    if (points->count > 0)
+        return orl_soft_from_points(r->log, points, fmax(1, (double)points->count / most), r->params->seed, &r->model);
+    struct orl_mesh mesh = {0};
+    char *path = orl_scene_mesh_path(r->log, r->scene);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (path && orl_path_is_file(path))
+        result = orl_mesh_read(r->log, path, &mesh);
+    ORL_THEN(result, orl_soft_from_mesh(r->log, &mesh, most, r->params->seed, &r->model));
+    orl_mesh_finish(&mesh);
+    free(path);
+    return result;
+}
+
+static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+{
     double pixels = 0;
     for (size_t i = 0; i < r->count; i++)
         pixels += (double)r->photos[i].color.width * r->photos[i].color.height;
     pixels *= (double)(r->count + r->checks) / (double)r->count; // those that wait are as large
-    const double every = fmax(1, (double)points->count / fmin(r->params->splats, pixels / PIXELS_OF_SPLAT));
-    ORL_TRY(orl_soft_from_points(r->log, points, every, r->params->seed, &r->model));
+    ORL_TRY(begin(r, fmin(r->params->splats, pixels / PIXELS_OF_SPLAT)));
     if (r->model.count == 0)
-        return orl_fail(r->log, ORL_ERR_DATA, "the scene has no points to make splats of");
+        return orl_fail(r->log, ORL_ERR_DATA, "the scene has neither points nor a mesh to make splats of");
     report->points = r->model.count;
     ORL_TRY(add_all_far(r, gpu));
     report->far = r->model.count - report->points;

@@ -47,24 +47,84 @@ static void turn_to(const float n[3], float q[4])
     q[2] = sign * n[0];
 }
 
+// Adds a flat splat.
+static enum orl_result add_disc(const struct orl_log *log, struct orl_soft_model *model, const float place[3],
+                                const float normal[3], double sigma, const float rgb[3])
+{
+    float *s;
+    ORL_TRY(grow(log, model, &s));
+    memcpy(s + ORL_SOFT_PLACE, place, 3 * sizeof *place);
+    s[ORL_SOFT_OPACITY] = DISC_LOGIT;
+    s[ORL_SOFT_SIGMA] = s[ORL_SOFT_SIGMA + 1] = logarithm(sigma);
+    s[ORL_SOFT_SIGMA + 2] = logarithm(THIN * sigma);
+    turn_to(normal, s + ORL_SOFT_TURN);
+    for (int c = 0; c < 3; c++)
+        s[ORL_SOFT_COLOR + c] = (float)(((double)rgb[c] - 0.5) / ORL_HARMONIC_0);
+    return ORL_OK;
+}
+
+static uint64_t random_state(uint64_t seed)
+{
+    return 0x9e3779b97f4a7c15u ^ (seed + 1) * 0xbf58476d1ce4e5b9u;
+}
+
 enum orl_result orl_soft_from_points(const struct orl_log *log, const struct orl_points *points, double every,
                                      uint64_t seed, struct orl_soft_model *model)
 {
     ORL_REQUIRE(log, every >= 1);
-    uint64_t state = 0x9e3779b97f4a7c15u ^ (seed + 1) * 0xbf58476d1ce4e5b9u;
+    uint64_t state = random_state(seed);
     for (size_t i = 0; i < points->count; i++) {
         if (orl_soft_random(&state) * every >= 1 || !(points->radius[i] > 0))
             continue;
-        float *s;
-        ORL_TRY(grow(log, model, &s));
-        memcpy(s + ORL_SOFT_PLACE, points->position[i], sizeof points->position[i]);
-        s[ORL_SOFT_OPACITY] = DISC_LOGIT;
-        double sigma = SIGMA * sqrt(every) * (double)points->radius[i];
-        s[ORL_SOFT_SIGMA] = s[ORL_SOFT_SIGMA + 1] = logarithm(sigma);
-        s[ORL_SOFT_SIGMA + 2] = logarithm(THIN * sigma);
-        turn_to(points->normal[i], s + ORL_SOFT_TURN);
+        float rgb[3];
         for (int c = 0; c < 3; c++)
-            s[ORL_SOFT_COLOR + c] = (float)((points->color[i][c] / 255.0 - 0.5) / ORL_HARMONIC_0);
+            rgb[c] = (float)points->color[i][c] / 255;
+        ORL_TRY(add_disc(log, model, points->position[i], points->normal[i],
+                         SIGMA * sqrt(every) * (double)points->radius[i], rgb));
+    }
+    return ORL_OK;
+}
+
+// Of a triangle: its normal's direction, and its area.
+static double triangle_area(const struct orl_mesh *mesh, size_t i, float normal[3])
+{
+    const float *a = mesh->position[mesh->triangle[i][0]], *b = mesh->position[mesh->triangle[i][1]];
+    const float *c = mesh->position[mesh->triangle[i][2]];
+    double n[3], length = 0;
+    for (int k = 0; k < 3; k++) {
+        int l = (k + 1) % 3, m = (k + 2) % 3;
+        n[k] = ((double)b[l] - a[l]) * ((double)c[m] - a[m]) - ((double)b[m] - a[m]) * ((double)c[l] - a[l]);
+        length += n[k] * n[k];
+    }
+    length = sqrt(length);
+    for (int k = 0; k < 3; k++)
+        normal[k] = length > 0 ? (float)(n[k] / length) : 0;
+    return length / 2;
+}
+
+enum orl_result orl_soft_from_mesh(const struct orl_log *log, const struct orl_mesh *mesh, double count, uint64_t seed,
+                                   struct orl_soft_model *model)
+{
+    static const float grey[3] = {0.5f, 0.5f, 0.5f};
+    uint64_t state = random_state(seed);
+    float normal[3];
+    double whole = 0;
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        whole += triangle_area(mesh, i, normal);
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const double own = whole > 0 ? triangle_area(mesh, i, normal) / whole * count : 0;
+        for (double n = floor(own + orl_soft_random(&state)); n >= 1; n--) {
+            double u = sqrt(orl_soft_random(&state)), v = orl_soft_random(&state); // uniform over the triangle
+            const double weights[3] = {1 - u, u * (1 - v), u * v};
+            float place[3];
+            for (int k = 0; k < 3; k++) {
+                double sum = 0;
+                for (int j = 0; j < 3; j++)
+                    sum += weights[j] * (double)mesh->position[mesh->triangle[i][j]][k];
+                place[k] = (float)sum;
+            }
+            ORL_TRY(add_disc(log, model, place, normal, SIGMA * sqrt(whole / count), grey));
+        }
     }
     return ORL_OK;
 }

@@ -5,6 +5,7 @@
 #define ORL_SOFT_MODEL_H
 
 #include "oriel/points.h"
+#include "scene/mesh.h"
 #include "shared/soft_blocks.h"
 
 // Values of a splat, as soft_blocks.h lists them: where they begin.
@@ -20,6 +21,9 @@ struct orl_soft_model {
 // large as those that it stands for.
 enum orl_result orl_soft_from_points(const struct orl_log *log, const struct orl_points *points, double every,
                                      uint64_t seed, struct orl_soft_model *model) ORL_CHECK_RESULT;
+// About `count` splats on a mesh, the same for the same seed: grey discs that cover it.
+enum orl_result orl_soft_from_mesh(const struct orl_log *log, const struct orl_mesh *mesh, double count, uint64_t seed,
+                                   struct orl_soft_model *model) ORL_CHECK_RESULT;
 // Adds a round splat: place, world; sigma, scene units; sRGB colour, [0, 1].
 enum orl_result orl_soft_add(const struct orl_log *log, struct orl_soft_model *model, const double place[3],
                              double sigma, float opacity, const float rgb[3]) ORL_CHECK_RESULT;
