@@ -90,9 +90,12 @@
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known, from the guess to " \
         "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
-    NUMBER(soft, 0, 0, 1, "share", "sample=srgb", ORL_NO_TRIES, \
-        "How much of the picture comes from the scene's soft splats (`oriel refine`), as far as they " \
-        "cover it. They mend what stereo cannot see, and `oriel refine` finds a good share.") \
+    NUMBER(soft, 0, 0, 1, "share", "paint=tiled", ORL_NO_TRIES, \
+        "How far the scene's soft splats (`oriel refine`) correct structure that photographs have in the " \
+        "wrong place. They mend what stereo cannot see, and `oriel refine` finds a good share.") \
+    NUMBER(soft_mix, 0, 0, 1, "share", "paint=tiled", ORL_NO_TRIES, \
+        "How much of the corrected picture comes from these splats themselves, as far as they cover it. " \
+        "Without `soft` none does.") \
     NUMBER(hull_side, 64, 8, 512, "voxels", "proxy=voxels proxy=hull", ORL_NO_TRIES, \
         "How many voxels the cube around the subject has each way. Time and memory of making " \
         "the hull grow with the third power.")

@@ -71,23 +71,25 @@ float sight_weight(ranking r, int k, spot s)
 const float GUESS_SEVERITY = 4.0;
 
 // Colour, and 1 if there is a sample; samples: colour, weight; blur: for estimated depth. Samples far
-// from the consensus lose weight: pedestrians, leaves, reflections. The square roots of the weights
+// from the consensus lose weight, which `samples` then hold: pedestrians, leaves, reflections. The square roots of the weights
 // make it a consensus of all photographs rather than of the best one; the square roots of light make
 // differences roughly perceptually uniform.
-vec4 blend(spot s, ranking r, vec4 samples[KEPT], out float blur)
+vec4 blend(spot s, ranking r, inout vec4 samples[KEPT], out float blur)
 {
     vec4 vote = vec4(0.0), sum = vec4(0.0);
     for (int k = 0; k < KEPT; k++)
         vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
     vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
+    float first = samples[0].a;
     float severity = outlier_severity * (is_guess(s) ? GUESS_SEVERITY : 1.0);
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(samples[k].rgb) - mean;
-        sum += vec4(samples[k].rgb, 1.0) * (samples[k].a / (1.0 + dot(off, off) * severity));
         apart += vec2(dot(off, off), 1.0) * samples[k].a;
+        samples[k].a /= 1.0 + dot(off, off) * severity;
+        sum += vec4(samples[k].rgb, 1.0) * samples[k].a;
     }
     apart.y = max(apart.y, 1e-30);
-    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), samples[0].a / apart.y);
+    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }

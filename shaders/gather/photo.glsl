@@ -54,9 +54,18 @@ vec4 photo_depths(photo source, vec2 pixel)
     return textureGather(photo_depth, vec3(at * (1.0 / slot_size.zw), slot));
 }
 
+// SOFT: w is the luma that soft splats show there, so that it goes through the same filters.
+#ifdef SOFT
+layout(binding = ORL_PHOTO_SOFT) uniform sampler2DArray photo_soft;
+#endif
+
 vec4 photo_texel(vec2 at, float slot, float lod)
 {
-    return textureLod(photo_color, vec3(at, slot), lod);
+    vec4 texel = textureLod(photo_color, vec3(at, slot), lod);
+#ifdef SOFT
+    texel.a = textureLod(photo_soft, vec3(at, slot), lod).r;
+#endif
+    return texel;
 }
 
 // The colour of which `texel` was read: with CHROMA, luma alone was.
@@ -68,7 +77,7 @@ vec4 photo_complete(vec4 texel, vec2 pixel, float slot, float lod)
     // The inverse of src/gpu/rgtc.c (ITU-R BT.601).
     vec3 color = texel.r + vec3(1.402 * chroma.g, -0.344136 * chroma.r - 0.714136 * chroma.g,
                                 1.772 * chroma.r);
-    return vec4(srgb_decode(clamp(color, 0.0, 1.0)), 1.0);
+    return vec4(srgb_decode(clamp(color, 0.0, 1.0)), texel.a);
 #else
     return texel;
 #endif

@@ -31,14 +31,20 @@ float surface_penalty(float penalty)
 
 #include "gather/consider.glsl"
 
-// Samples with the k-th photograph of a ranking. Every one is read: see insert.
-vec4 look(ranking r, int k, spot s)
+// Samples with the k-th photograph of a ranking, and the luma that soft splats show there. Every one is read: see
+// insert.
+vec4 look(ranking r, int k, spot s, out float luma)
 {
     sight one = r.best[k];
-    vec3 color = photo_ranked(photo_at(one.index), k, one.pixel, one.mip);
+    vec4 color = photo_ranked(photo_at(one.index), k, one.pixel, one.mip);
     float weight = sight_weight(r, k, s);
-    return weight > 0.0 ? vec4(color, weight) : vec4(0.0);
+    luma = color.a;
+    return weight > 0.0 ? vec4(color.rgb, weight) : vec4(0.0);
 }
+
+#ifdef SOFT
+layout(r16f, binding = 4) writeonly uniform image2D soft_luma; // blended; < 0: there is none
+#endif
 
 void main()
 {
@@ -71,14 +77,20 @@ void main()
             left_out = max(left_out, spots[k].p.z > 0.0 ? rankings[k].next : 0.0);
         i = left_out < NOT_SEEN ? -1 : i;
     } while (i >= 0);
+    float lumas[4]; // as `shown`, blended
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
+        float shown[KEPT];
         vec4 samples[KEPT];
         for (int n = 0; n < KEPT; n++)
-            samples[n] = look(rankings[k], n, spots[k]);
+            samples[n] = look(rankings[k], n, spots[k], shown[n]);
         colors[k] = blend(spots[k], rankings[k], samples, own);
+        vec2 luma = vec2(0.0);
+        for (int n = 0; n < KEPT; n++)
+            luma += vec2(shown[n], 1.0) * samples[n].a;
+        lumas[k] = luma.x / luma.y;
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k];
         guess += guessed;
@@ -88,6 +100,7 @@ void main()
     for (int k = 0; k < 4; k++) {
         bool has_color = colors[k].a > 0.0;
         bool blurs = has_color && is_guess(spots[k]) && blur > 0.0;
+        lumas[k] = has_color ? lumas[k] : -1.0;
         whole = whole && has_color && !blurs;
         colors[k] = !has_color ? pixel_unpainted()
                     : blurs    ? pixel_to_blur(colors[k].rgb, blur)
@@ -97,6 +110,10 @@ void main()
     // lie outside the picture do nothing.
     for (int k = 0; k < 4; k++)
         imageStore(painted, corner + ivec2(k & 1, k >> 1), colors[k]);
+#ifdef SOFT
+    for (int k = 0; k < 4; k++)
+        imageStore(soft_luma, corner + ivec2(k & 1, k >> 1), vec4(lumas[k]));
+#endif
     imageStore(seeds, corner / 2, seed);
     if (guess.a > 0.0) // the host has cleared the image, which costs less than stores
         imageStore(guesses, corner / 2, guess);

@@ -121,7 +121,9 @@ ORL_BLOCK(gather_block)
 };
 #endif
 
-#define ORL_PHOTO_CHROMA 3 // texture unit of photographs' chroma
+// Texture units of photographs' chroma, and of what soft splats show in them.
+#define ORL_PHOTO_CHROMA 3
+#define ORL_PHOTO_SOFT 4
 #define ORL_BICUBIC 1 // value of opt.sampling
 
 // Selection of photographs per tile.

@@ -15,12 +15,12 @@ COMMAND_OPTIONS(refine_options, REFINE_OPTIONS)
 
 static void print(const struct orl_refine_report *r)
 {
-    printf("%zu splats, of %zu from points and %zu far ones; %d steps on %zu photographs, loss %.4f\n", r->splats,
+    printf("%zu splats, of %zu on surfaces and %zu far ones; %d steps on %zu photographs, loss %.4f\n", r->splats,
            r->points, r->far, r->steps, r->photographs, r->loss);
     printf("%zu photographs that they had not seen, each drawn without itself: %.3f dB without splats", r->checks,
            r->before_psnr_db);
     if (r->share > 0)
-        printf(", %.3f with --set soft=%.2g%s\n", r->psnr_db, r->share,
+        printf(", %.3f with --set soft=%.2g --set soft_mix=%.2g%s\n", r->psnr_db, r->share, r->mix_share,
                r->kept ? ", which the scene takes from now on" : "");
     else
         printf(", and no better with any share of them: the scene is drawn without\n");

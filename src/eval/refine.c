@@ -19,10 +19,11 @@
 // depth within which FAR_SHARE of the view's splats are.
 enum { GRID = 4, FAR_VIEWS = 3 };
 // One of CHECKED photographs, at least CHECKS_MIN of them, or one of two, and at most CHECKS_MAX, waits for the last
-// third of the steps, so that the share of the splats can be found on what they have not seen.
+// third of the steps, so that the shares of the splats can be found on what they have not seen.
 enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
-static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f};
+static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f, 1};
+static const size_t MIX_SHARES = 5; // of them for the second option
 static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
 static const double PIXELS_OF_SPLAT = 6; // of photographs, at least: twice as many splats make pictures no better
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
@@ -153,43 +154,70 @@ static enum orl_result add_all_far(struct refine *r, struct orl_gpu *gpu)
 
 // --- how much of them ---
 
-// The share with which the checks come out best, of those that are better than none at all.
-static enum orl_result find_share(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+// Of the shares, the one for `option` of `render` with which the checks come out best, if that is better than 0; *best
+// is the score so far.
+static enum orl_result find_share(const struct refine *r, struct orl_renderer *renderer,
+                                  const struct orl_validation *checks, struct orl_render_params *render, float *option,
+                                  size_t count, struct orl_score *best)
 {
-    struct orl_validation checks = {0};
-    struct orl_renderer *renderer = NULL;
-    struct orl_score none = {0};
-    struct orl_render_params render = r->params->choice.params;
-    enum orl_result result = orl_validation_load(r->log, r->scene, r->checks, r->params->size_divide, &checks);
-    ORL_THEN(result, orl_renderer_create(gpu, r->scene, NULL, &renderer));
-    render.soft = 0;
-    ORL_THEN(result, orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &none));
-    report->checks = checks.count;
-    report->psnr_db = report->before_psnr_db = none.psnr_db;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(SHARES); i++) {
+    struct orl_score none = *best;
+    enum orl_result result = ORL_OK;
+    float found = 0;
+    *best = (struct orl_score){.psnr_db = none.psnr_db};
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
         struct orl_score score = {0};
-        render.soft = SHARES[i];
-        result = orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &score);
-        if (result == ORL_OK && score.psnr_db > report->psnr_db && orl_score_better(&score, &none, GAIN_DB)) {
-            report->share = (double)SHARES[i];
-            report->psnr_db = score.psnr_db;
+        *option = SHARES[i];
+        result = orl_score_measure(r->log, renderer, checks, render, r->params->progress, &score);
+        if (result == ORL_OK && score.psnr_db > best->psnr_db && orl_score_better(&score, &none, GAIN_DB)) {
+            struct orl_score worse = *best;
+            *best = score;
+            score = worse;
+            found = SHARES[i];
         }
         orl_score_finish(&score);
     }
-    orl_score_finish(&none);
+    *option = found;
+    if (found > 0)
+        orl_score_finish(&none);
+    else
+        *best = none;
+    return result;
+}
+
+// How far splats correct pictures, and, if they do, how much of them is mixed in.
+static enum orl_result find_shares(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+{
+    struct orl_validation checks = {0};
+    struct orl_renderer *renderer = NULL;
+    struct orl_score best = {0};
+    struct orl_render_params render = r->params->choice.params;
+    enum orl_result result = orl_validation_load(r->log, r->scene, r->checks, r->params->size_divide, &checks);
+    ORL_THEN(result, orl_renderer_create(gpu, r->scene, NULL, &renderer));
+    render.soft = render.soft_mix = 0;
+    ORL_THEN(result, orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &best));
+    report->checks = checks.count;
+    report->before_psnr_db = best.psnr_db;
+    ORL_THEN(result, find_share(r, renderer, &checks, &render, &render.soft, ORL_COUNT(SHARES), &best));
+    if (result == ORL_OK && render.soft > 0)
+        result = find_share(r, renderer, &checks, &render, &render.soft_mix, MIX_SHARES, &best);
+    report->share = (double)render.soft;
+    report->mix_share = (double)render.soft_mix;
+    report->psnr_db = best.psnr_db;
+    orl_score_finish(&best);
     orl_renderer_destroy(&renderer);
     orl_validation_finish(&checks);
     return result;
 }
 
-// Keeps the share beside what is tuned.
-static enum orl_result keep_share(const struct refine *r, struct orl_refine_report *report)
+// Keeps the shares beside what is tuned.
+static enum orl_result keep_shares(const struct refine *r, struct orl_refine_report *report)
 {
     struct orl_choice choice = r->params->choice;
     char *path = orl_format(r->log, "%s/scene.json", r->scene->dir);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     report->kept = path && orl_path_is_file(path);
     choice.params.soft = (float)report->share;
+    choice.params.soft_mix = (float)report->mix_share;
     if (report->kept)
         result = orl_tuned_write(r->log, r->scene->dir, choice.method->name,
                                  orl_choice_record(&choice, report->before_psnr_db, report->psnr_db, report->checks,
@@ -264,11 +292,11 @@ static enum orl_result run(struct refine *r, struct orl_gpu *gpu, struct orl_ref
     ORL_TRY(read_photos(r, false));
     ORL_TRY(start(r, gpu, report));
     ORL_TRY(descend(r, gpu, FIRST_PART, 1, report));
-    ORL_TRY(find_share(r, gpu, report));
+    ORL_TRY(find_shares(r, gpu, report));
     ORL_TRY(read_photos(r, true));
     ORL_TRY(descend(r, gpu, 1 - FIRST_PART, LAST_FIRST_SIZE, report));
     report->photographs = r->count;
-    return keep_share(r, report);
+    return keep_shares(r, report);
 }
 
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,

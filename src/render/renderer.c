@@ -14,7 +14,6 @@
 #include "render/proxy/proxy.h"
 #include "render/read_back.h"
 #include "render/reconstructions.h"
-#include "render/soft_layer.h"
 
 enum { PROXIES_MAX = 4 };
 
@@ -27,7 +26,6 @@ struct orl_renderer {
     struct photos photos;
     struct paint paint;
     struct room room;
-    struct soft_layer soft;
     struct orl_tex *picture;  // of struct frame
     struct orl_tex *mean;     // reconstructions.h; NULL: a frame is one picture
     size_t *chosen;           // memory of struct frame's list
@@ -121,7 +119,6 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_photos_finish(r->gpu, &r->photos);
     orl_paint_finish(r->gpu, &r->paint);
     orl_room_finish(r->gpu, &r->room);
-    orl_soft_layer_finish(r->gpu, &r->soft);
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->picture);
     orl_tex_destroy(r->gpu, &r->mean);
@@ -184,6 +181,8 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
         pass->run(frame);
         orl_pass_end(frame->gpu);
     }
+    if (result == ORL_OK && frame->soft)
+        result = orl_soft_layer_mix(frame);
     return result;
 }
 
@@ -208,8 +207,6 @@ static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool no
         if (result == ORL_OK && count > 1)
             orl_reconstruction_add(frame, r->mean, done, count);
     }
-    if (result == ORL_OK && orl_soft_layer_shows(frame))
-        result = orl_soft_layer_mix(frame, &r->soft);
     if (result == ORL_OK && done > 1) // what is read back beside the picture is the scene's own
         result = draw_surface(frame, frame->params);
     return result;
@@ -282,6 +279,7 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
         return result;
     struct frame frame = start_frame(r, proxy, view, params, skip);
     frame.progressive = progressive;
+    frame.soft = orl_soft_layer_shows(&frame) ? &r->paint.soft : NULL;
     result = ready_frame(r, &frame);
     if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
         result = orl_prefetch_create(&frame, r->expected, &next);

@@ -13,7 +13,7 @@ struct orl_soft_raster {
     struct orl_buf *splats, *projected, *bounds; // owned
     struct orl_buf *listed;                      // owned: grows
     struct orl_tex *values, *seen, *entries;     // owned: views of `splats`, `projected` and `listed`
-    struct orl_tex *blended;                     // owned: RGBA32F: sRGB colour, what passes
+    struct orl_tex *blended;                     // owned: RGBA32F, with mip levels: sRGB colour, what passes
     uint32_t (*host_bounds)[ORL_SOFT_BOUND_WORDS]; // owned
     struct orl_soft_lists lists;
 };

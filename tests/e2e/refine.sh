@@ -10,7 +10,10 @@ scene train train train train test
 # A held-out photograph is not even read.
 head -c 700 "ws/images/${names[4]}" >short && mv short "ws/images/${names[4]}"
 
-picture() { runs "$1" "$oriel" render ws --at "${names[1]}" --set "soft=$2" --quiet --out "$3"; }
+# picture STATUS SOFT FILE [SOFT_MIX]
+picture() {
+    runs "$1" "$oriel" render ws --at "${names[1]}" --set "soft=$2" --set "soft_mix=${4:-0}" --quiet --out "$3"
+}
 picture 2 0.3 none.png
 grep -q 'soft.ply: missing; oriel refine' stderr.txt || fail "not said what makes soft splats"
 [ -e none.png ] && fail "a picture without them"
@@ -44,13 +47,16 @@ workspace 20 || exit 77
 bash "$source/tests/bench/truth_cloud" photos-truth 8 >ws/fused.ply || exit 1
 scene train train train train train train train train train train train train train train train train train train train test
 runs 0 "$oriel" refine ws --splats 20000
-grep -q '^3 photographs that .* with --set soft=0\.[0-9]*, which the scene takes from now on$' stdout.txt || fail "no share"
-share=$(jq .tuned.oriel.settings.soft ws/scene.json)
+grep -q '^3 photographs that .* with --set soft=[0-9.]* --set soft_mix=[0-9.]*, which the scene takes from now on$' stdout.txt || fail "no share"
+share=$(jq .tuned.oriel.settings.soft ws/scene.json) mix_share=$(jq '.tuned.oriel.settings.soft_mix // 0' ws/scene.json)
 runs 0 "$oriel" render ws --at "${names[1]}" --quiet --out tuned.png
-picture 0 "$share" set.png
+picture 0 "$share" set.png "$mix_share"
 picture 0 0 own.png
 cmp -s tuned.png set.png || fail "the share is not taken"
 cmp -s own.png tuned.png && fail "the share changes nothing"
+# The held-out photograph, which took no part, comes out better.
+psnr() { "$oriel" eval ws ${1:+--set "$1"} --quiet --json - | jq .mean.psnr_db; }
+jq -n "$(psnr "") > $(psnr soft=0) + 0.05" | grep -q true || fail "no gain at the held-out photograph"
 runs 0 "$oriel" trim ws --out small --budget 1 --views 2 --quiet
 runs 0 "$oriel" render small --at "${names[1]}" --quiet --out small.png
 exit $failed

@@ -208,31 +208,118 @@ static void test_descent(void **state)
     orl_soft_finish(&still);
 }
 
-// What the splats cover is mixed, what they leave open stays, and light above white is kept.
+enum { SIDE = 32, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
+
+static struct orl_tex *make_picture(GLenum format, int levels, bool array)
+{
+    struct orl_tex *tex;
+    const struct orl_tex_params params = {.width = SIDE, .height = SIDE, .layers = array, .levels = levels,
+                                          .format = format, .linear = true, .tag = "test"};
+    assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
+    return tex;
+}
+
+// Splats of one grey, but for a pixel that is open, and one that is white, into `blended`.
+static void show_splats(struct orl_tex *blended, size_t open, size_t white)
+{
+    float pixels[SIDE * SIDE][4];
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 4; c++)
+            pixels[i][c] = c == 3 ? i == open : i == open ? 0 : i == white ? 1 : 0.5f;
+    orl_tex_write(blended, 0, 0, GL_RGBA, GL_FLOAT, pixels);
+    orl_tex_make_mipmaps(blended, 0);
+}
+
+// What splats show is kept as luma; what is open is as what they show around it, and beyond the photograph there is what
+// its border shows.
+static void test_keep(void **state)
+{
+    (void)state;
+    struct orl_tex *blended = make_picture(GL_RGBA32F, 6, false), *slot = make_picture(GL_R8, 1, true);
+    const struct soft_block block = {.view_size = {SIDE, SIDE - 1}, .mean_level = 1.5f};
+    uint8_t kept[SIDE * SIDE];
+    show_splats(blended, MIDDLE, (SIDE - 2) * SIDE);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/keep.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
+        .textures = {blended}, .images = {{slot, 0, GL_WRITE_ONLY}}, .image_layers = {1},
+        .groups = {orl_groups(SIDE, ORL_PIXEL_GROUP_X), orl_groups(SIDE, ORL_PIXEL_GROUP_Y)},
+        .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
+    orl_tex_read(slot, 0, GL_RED, GL_UNSIGNED_BYTE, sizeof kept, kept);
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        assert_in_range(kept[i] + 1, i % SIDE == 0 && i / SIDE >= SIDE - 2 ? 255 : 128,
+                        i % SIDE == 0 && i / SIDE >= SIDE - 2 ? 256 : 129);
+    orl_tex_destroy(gpu, &blended);
+    orl_tex_destroy(gpu, &slot);
+}
+
+// Corrects by `gathered` and mixes in `splats` of the splats.
+static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, float picture[SIDE * SIDE][4])
+{
+    struct orl_tex *blended = make_picture(GL_RGBA32F, 6, false), *other = make_picture(GL_R16F, 1, false);
+    struct orl_tex *differs = make_picture(GL_R16F, 6, false), *own = make_picture(GL_RGBA16F, 1, false);
+    const struct soft_block block = {.view_size = {SIDE, SIDE}, .correct_share = 0.5f, .mix_share = splats, .mean_level = 1.5f};
+    show_splats(blended, open, SIDE * SIDE);
+    orl_tex_write(other, 0, 0, GL_RED, GL_FLOAT, gathered);
+    orl_tex_write(own, 0, 0, GL_RGBA, GL_FLOAT, picture);
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(gpu, "soft/compare.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
+        .textures = {blended}, .images = {{other, 0, GL_READ_ONLY}, {differs, 0, GL_WRITE_ONLY}},
+        .groups = {orl_groups(SIDE, ORL_PIXEL_GROUP_X), orl_groups(SIDE, ORL_PIXEL_GROUP_Y)},
+        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_gpu_dispatch(gpu, &d);
+    orl_tex_make_mipmaps(differs, 0);
+    d.prog = orl_prog_get(gpu, "soft/mix.comp", NULL, NULL);
+    d.textures[0] = differs;
+    d.images[1] = (struct orl_image_binding){own, 0, GL_READ_WRITE};
+    d.images[2] = (struct orl_image_binding){blended, 0, GL_READ_ONLY};
+    d.barrier = GL_TEXTURE_UPDATE_BARRIER_BIT;
+    orl_gpu_dispatch(gpu, &d);
+    orl_tex_read(own, 0, GL_RGBA, GL_FLOAT, SIDE * SIDE * sizeof *picture, picture);
+    orl_tex_destroy(gpu, &blended);
+    orl_tex_destroy(gpu, &other);
+    orl_tex_destroy(gpu, &differs);
+    orl_tex_destroy(gpu, &own);
+}
+
+static double encoded(double linear)
+{
+    return 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+// A picture takes the fine part of what the splats show other than in its photographs, by its share, in sRGB; not the
+// coarse part, and nothing where there is no photograph, or no splat. Light above white stays.
 static void test_mix(void **state)
 {
     (void)state;
-    struct orl_tex *blended, *picture;
-    const struct soft_block block = {.view_size = {2, 1}, .mix_share = 0.5f};
-    const float splats[2][4] = {{0.5f, 0.5f, 0.5f, 0}, {0, 0, 0, 1}}, own[2][4] = {{1, 1, 3, 0.25f}, {0.2f, 0.5f, 0.7f, 1}};
-    float mixed[2][4];
-    const struct orl_tex_params params = {.width = 2, .height = 1, .format = GL_RGBA32F, .tag = "test"};
-    assert_int_equal(orl_tex_create(gpu, &params, &blended), ORL_OK);
-    assert_int_equal(orl_tex_create(gpu, &params, &picture), ORL_OK);
-    orl_tex_write(blended, 0, 0, GL_RGBA, GL_FLOAT, splats);
-    orl_tex_write(picture, 0, 0, GL_RGBA, GL_FLOAT, own);
-    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(gpu, "soft/mix.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
-        .images = {{blended, 0, GL_READ_ONLY}, {picture, 0, GL_READ_WRITE}}, .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
-    orl_tex_read(picture, 0, GL_RGBA, GL_FLOAT, sizeof mixed, mixed);
-    const double half_way = pow((0.75 + 0.055) / 1.055, 2.4);
-    assert_float_equal(mixed[0][0], half_way, 1e-4);
-    assert_float_equal(mixed[0][2], half_way + 2, 1e-4);
-    assert_float_equal(mixed[0][3], 0.25, 0);
-    for (int c = 0; c < 4; c++)
-        assert_float_equal(mixed[1][c], own[1][c], 1e-4);
-    orl_tex_destroy(gpu, &blended);
-    orl_tex_destroy(gpu, &picture);
+    float gathered[SIDE * SIDE], picture[SIDE * SIDE][4];
+    for (size_t i = 0; i < SIDE * SIDE; i++) {
+        gathered[i] = 0.25f;
+        for (int c = 0; c < 4; c++)
+            picture[i][c] = c == 2 ? 3 : 0.25f;
+    }
+    mix(gathered, SIDE * SIDE, 0, picture);
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 4; c++)
+            assert_float_equal(picture[i][c], c == 2 ? 3 : 0.25, 2e-3);
+
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        gathered[i] = i == MIDDLE ? 0.25f : i == 4 * SIDE + 4 ? -1 : 0.5f;
+    mix(gathered, 4 * SIDE + 24, 0, picture);
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        if (i / SIDE < 8 || i / SIDE > 24) // far from the pixel that differs
+            assert_float_equal(picture[i][0], 0.25, 2e-3);
+    double more = encoded((double)picture[MIDDLE][0]) - encoded(0.25); // the coarse part takes 0.03 at most
+    assert_true(more > 0.5 * 0.22 && more < 0.5 * 0.25);
+    assert_float_equal(picture[MIDDLE][1], picture[MIDDLE][0], 1e-3);
+    assert_true(picture[MIDDLE][2] > 2.9f && picture[MIDDLE][3] == 0.25f);
+
+    // What splats cover is mixed, and what they leave open stays.
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        gathered[i] = 0.5f;
+    const float before = picture[0][0];
+    mix(gathered, 0, 0.5f, picture);
+    assert_float_equal(picture[0][0], before, 1e-3);
+    assert_float_equal(encoded((double)picture[1][0]), (encoded(0.25) + 0.5) / 2, 2e-3);
 }
 
 static int setup(void **state)
@@ -256,6 +343,7 @@ int main(void)
         cmocka_unit_test(test_splats_blend),
         cmocka_unit_test(test_size_of_the_view),
         cmocka_unit_test(test_descent),
+        cmocka_unit_test(test_keep),
         cmocka_unit_test(test_mix),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

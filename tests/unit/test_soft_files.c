@@ -63,6 +63,35 @@ static void test_from_points(void **state)
     orl_points_finish(&points);
 }
 
+// A wide and a narrow triangle, across the third axis, get splats by area, within them; a flat one gets none.
+static void test_from_mesh(void **state)
+{
+    (void)state;
+    float corners[][3] = {{0, 0, 2}, {3, 0, 2}, {0, 2, 2}, {0, 0, 5}, {0, 2, 5}, {1, 0, 5}, {9, 9, 9}};
+    uint32_t triangles[][3] = {{0, 1, 2}, {3, 4, 5}, {6, 6, 6}};
+    const struct orl_mesh mesh = {.vertex_count = 7, .triangle_count = 3, .position = corners, .triangle = triangles};
+    struct orl_soft_model model = {0};
+    size_t near = 0;
+    assert_int_equal(orl_soft_from_mesh(NULL, &mesh, 4000, 7, &model), ORL_OK);
+    assert_in_range(model.count, 3998, 4002);
+    double middle = 0;
+    for (size_t i = 0; i < model.count; i++) {
+        const float *s = model.splats[i];
+        double width = s[2] < 3 ? 3 : 1;
+        assert_true(s[0] >= 0 && s[1] >= 0 && (double)s[0] / width + (double)s[1] / 2 <= 1 + 1e-6);
+        assert_true(s[2] == 2 || s[2] == 5);
+        near += s[2] == 2;
+        middle += s[2] == 2 ? (double)s[0] : 0;
+        // The third axis stays, or turns about one across it by none.
+        assert_true(s[ORL_SOFT_TURN] > 0 && s[ORL_SOFT_TURN + 1] == 0 && s[ORL_SOFT_TURN + 2] == 0);
+        assert_float_equal(s[ORL_SOFT_COLOR], 0, 0);
+    }
+    assert_in_range(near, 2998, 3002);
+    assert_float_equal(middle / (double)near, 1, 0.05);
+    assert_float_equal(exp((double)model.splats[0][ORL_SOFT_SIGMA]), 0.5 * sqrt(4 / 4000.0), 1e-6);
+    orl_soft_finish(&model);
+}
+
 static uint32_t bits(float depth)
 {
     uint32_t word;
@@ -96,6 +125,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_file),
         cmocka_unit_test(test_from_points),
+        cmocka_unit_test(test_from_mesh),
         cmocka_unit_test(test_lists),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

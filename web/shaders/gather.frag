@@ -55,7 +55,7 @@ void main()
         float weight = sight_weight(r, k, s);
         samples[k] = vec4(0.0);
         if (weight > 0.0)
-            samples[k] = vec4(photo_ranked(photo_at(one.index), k, one.pixel, one.mip), weight);
+            samples[k] = vec4(photo_ranked(photo_at(one.index), k, one.pixel, one.mip).rgb, weight);
     }
     float blur;
     vec4 color = blend(s, r, samples, blur);

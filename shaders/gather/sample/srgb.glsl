@@ -17,33 +17,40 @@ vec3 photo_aligned(photo source, vec2 pixel, vec3 color)
     return gain * color / (1.0 + c * (more - third + third * c * c));
 }
 
-// Colour, and full confidence.
-vec4 photo_sample(photo source, vec2 pixel, float mip)
+// Colour, and w of photo_texel.
+vec4 photo_filtered(photo source, vec2 pixel, float mip)
 {
     // Each filter is a program of its own, since software renderers run both sides of a condition.
 #ifdef BICUBIC
-    vec3 color = photo_bicubic(source, pixel, mip).rgb;
+    vec4 texel = photo_bicubic(source, pixel, mip);
 #else
     // Mip levels are interpolated only in a narrow range, where a software renderer reads two
     // levels.
     // Elsewhere it reads one, which is more often the sharper one.
     float level = floor(mip);
     level += clamp(5.0 * (mip - level) - 3.5, 0.0, 1.0);
-    vec3 color = photo_bilinear(source, pixel, level).rgb;
+    vec4 texel = photo_bilinear(source, pixel, level);
 #endif
-    return vec4(photo_aligned(source, pixel, color), 1.0);
+    return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
+}
+
+// Colour, and full confidence.
+vec4 photo_sample(photo source, vec2 pixel, float mip)
+{
+    return vec4(photo_filtered(source, pixel, mip).rgb, 1.0);
 }
 
 // How many of a pixel's photographs are read with the filter that is asked for. They have most of the weight.
 // The others are read with one fetch.
 const int SHARP = 2;
 
-// The sample of the k-th best photograph, from 0.
-vec3 photo_ranked(photo source, int k, vec2 pixel, float mip)
+// The sample of the k-th best photograph, from 0, and w of photo_texel.
+vec4 photo_ranked(photo source, int k, vec2 pixel, float mip)
 {
     if (k < SHARP)
-        return photo_sample(source, pixel, mip).rgb;
+        return photo_filtered(source, pixel, mip);
     // The level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM.
     float level = floor(max(mip - 0.3, 0.0));
-    return photo_aligned(source, pixel, photo_bilinear(source, pixel, level).rgb);
+    vec4 texel = photo_bilinear(source, pixel, level);
+    return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
 }

@@ -13,6 +13,7 @@ void orl_paint_finish(struct orl_gpu *gpu, struct paint *paint)
     orl_gather_finish(gpu, &paint->gather);
     orl_fill_finish(gpu, &paint->fill);
     orl_soften_finish(gpu, &paint->soften);
+    orl_soft_layer_finish(gpu, &paint->soft);
     orl_edges_finish(gpu, &paint->edges);
     orl_guess_finish(gpu, &paint->guess);
     orl_tex_destroy(gpu, &paint->trusted);

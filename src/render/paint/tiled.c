@@ -30,15 +30,19 @@ static const char *rest_define(const struct frame *frame)
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
 static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
 {
-    char defines[32];
+    char defines[64];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%sKEPT %d", rest_define(frame), kept);
+    snprintf(defines, sizeof defines, "%s%sKEPT %d", rest_define(frame), frame->soft ? "SOFT 1\n" : "", kept);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
     d.images[3] = (struct orl_image_binding){frame->paint->soften.guesses, 0, GL_WRITE_ONLY};
+    if (frame->soft) {
+        d.textures[ORL_PHOTO_SOFT] = frame->photos->soft;
+        d.images[4] = (struct orl_image_binding){frame->soft->gathered, 0, GL_WRITE_ONLY};
+    }
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
@@ -93,6 +97,8 @@ static enum orl_result paint(struct frame *frame)
         result = orl_progressive_admit(frame, true);
     for (size_t i = 0; !frame->progressive && result == ORL_OK && i < frame->chosen_count; i++)
         result = orl_photos_require(frame, frame->chosen[i], true);
+    if (result == ORL_OK && frame->soft)
+        result = orl_soft_layer_ready(frame);
     ORL_THEN(result, paint_chosen(frame));
     return result == ORL_OK ? orl_gather_underpaint(frame) : result;
 }

@@ -11,6 +11,7 @@
 #include "render/frame/method.h"
 #include "render/photos/occluders.h"
 #include "render/photos/photos.h"
+#include "scene/manifest.h"
 #include "scene/silhouette.h"
 #include "shared/hull_blocks.h"
 #include "shared/render_blocks.h"
@@ -121,12 +122,20 @@ static size_t slot_budget(const struct photos *photos, const struct slot_size *s
 // Of everything that a method may ask for.
 static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
 {
-    struct photos mask = {.format = GL_R8}, background = {.format = GL_SRGB8_ALPHA8};
+    struct photos byte = {.format = GL_R8}, background = {.format = GL_SRGB8_ALPHA8};
     return color_bytes(photos, size) +
            (size_t)size->depth_width * (size_t)size->depth_height *
                (photos->scene->defaults.depth_half ? 2 : 4) +
-           (photos->silhouettes ? color_bytes(&mask, size) : 0) +
+           (photos->silhouettes + photos->softens) * color_bytes(&byte, size) +
            (photos->places ? color_bytes(&background, size) : 0);
+}
+
+static bool has_soft_splats(const struct orl_scene *scene)
+{
+    char *path = orl_format(NULL, "%s/%s", scene->dir, ORL_SOFT_NAME);
+    bool has = path && orl_path_is_file(path);
+    free(path);
+    return has;
 }
 
 static bool fits_all(const struct photos *photos, const struct slot_size *size, int count,
@@ -223,6 +232,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     for (size_t i = 0; i < scene->photo_count; i++)
         photos->silhouettes |= photos->states[i].usable && scene->photos[i].masked;
     photos->places = orl_photos_backgrounds(photos);
+    photos->softens = !photos->radiance && has_soft_splats(scene);
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
     enum orl_textures textures = ORL_TEXTURES_AUTO;
     enum orl_result result = orl_textures_choose(log, scene, params, &textures);
@@ -268,6 +278,7 @@ void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
     orl_tex_destroy(gpu, &photos->chroma);
     orl_tex_destroy(gpu, &photos->depth);
     orl_tex_destroy(gpu, &photos->loading);
+    orl_tex_destroy(gpu, &photos->soft);
     orl_tex_destroy(gpu, &photos->mask);
     orl_tex_destroy(gpu, &photos->background);
     free(photos->background_of);
@@ -287,7 +298,7 @@ static void evict(struct photo_state *state)
 {
     state->slot = -1;
     state->depth_divide = 0;
-    state->has_color = state->has_mask = false;
+    state->has_color = state->has_mask = state->has_soft = false;
 }
 
 // Returns a free slot, or else evicts the least recently used photograph. There is at least one slot.

@@ -12,7 +12,7 @@
 struct photo_state {
     bool usable;
     int slot; // layer of the arrays; -1: not resident
-    bool has_color, has_mask;
+    bool has_color, has_mask, has_soft;
     int depth_divide;   // its depth has 1/depth_divide of the size of depth_camera; 0: no depth
     uint64_t depth_key; // of the frame that its depth was drawn for
     unsigned last_use;
@@ -33,13 +33,14 @@ struct photos {
     struct orl_tex *loading;    // a photograph before compression; NULL: none is being loaded
     struct orl_tex *depth;      // z; < 0: estimated in a hole, 0: none; NULL: no method asked for it
     struct orl_tex_params depth_params; // of depth
+    struct orl_tex *soft;       // R8: luma of soft splats, shaders/soft/keep.comp; NULL: not asked for
     struct orl_tex *mask;       // R8: which pixels are the subject's; NULL: not asked for yet
     struct orl_tex *background; // pictures of the place without the subject; NULL: not asked for
     size_t *background_of;      // per slot: 1 + the photograph whose background it holds; 0: none.
                                 // It outlives a time step. NULL: none was asked for; owned
     const struct orl_progress *progress; // see struct orl_renderer_params
     size_t uploaded;            // bytes of photographs and masks that went to the device
-    bool silhouettes, places;   // methods may ask for mask, for background
+    bool silhouettes, places, softens; // methods may ask for mask, for background, for soft
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size
     unsigned clock;
     int time_step;                 // scene->frame of what is resident

@@ -1,0 +1,169 @@
+#include "render/paint/soft_layer.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "render/photos/photos.h"
+#include "scene/manifest.h"
+#include "soft/soft_ply.h"
+
+// The coarse part of a difference is its mean over a photograph's longer side over this: colours of splats are
+// less exact than those of photographs, their structure is more so where a surface is wrong.
+static const double COARSE = 80;
+
+bool orl_soft_layer_shows(const struct frame *frame)
+{
+    return frame->params->soft > 0 && frame->finishes;
+}
+
+static enum orl_result load(const struct frame *frame)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct orl_soft_model model = {0};
+    char *path = orl_format(log, "%s/%s", frame->scene->dir, ORL_SOFT_NAME);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (path && !orl_path_is_file(path))
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws without", path, frame->scene->dir);
+    ORL_THEN(result, orl_soft_read(log, path, &model));
+    ORL_THEN(result, orl_soft_raster_init(frame->gpu, &model, &frame->soft->raster));
+    orl_soft_finish(&model);
+    free(path);
+    return result;
+}
+
+// Draws the splats into a view, in which what is coarse in photographs is `pixels` wide.
+static enum orl_result draw(const struct frame *frame, const struct orl_view *view, double pixels,
+                            struct soft_block *block)
+{
+    struct orl_soft_raster *raster = &frame->soft->raster;
+    ORL_TRY(orl_soft_raster_draw(frame->gpu, raster, view, true, block));
+    orl_tex_make_mipmaps(raster->blended, 0);
+    block->mean_level = (float)fmax(log2(pixels), 0);
+    block->correct_share = frame->params->soft;
+    block->mix_share = frame->params->soft_mix;
+    return ORL_OK;
+}
+
+static double coarse_pixels(const struct orl_camera *camera)
+{
+    return fmax(camera->width, camera->height) / COARSE;
+}
+
+// --- in photographs ---
+
+static enum orl_result keep(const struct frame *frame, size_t photo)
+{
+    struct photos *photos = frame->photos;
+    struct photo_state *state = &photos->states[photo];
+    struct orl_tex_params params = photos->color_params;
+    const struct orl_view view = {state->color_camera, photos->scene->photos[photo].view.cam_from_world};
+    struct soft_block block;
+    params.format = GL_R8;
+    params.tag = "soft splats in photographs";
+    if (!photos->soft)
+        ORL_TRY(orl_tex_create(frame->gpu, &params, &photos->soft));
+    ORL_TRY(draw(frame, &view, coarse_pixels(&view.camera), &block));
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(frame->gpu, "soft/keep.comp", NULL, NULL),
+        .params = &block, .params_size = sizeof block,
+        .textures = {frame->soft->raster.blended},
+        .images = {{photos->soft, 0, GL_WRITE_ONLY}},
+        .image_layers = {state->slot + 1},
+        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+    orl_pixel_groups(params.width, params.height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+    orl_tex_make_mipmaps(photos->soft, state->slot);
+    state->has_soft = true;
+    return ORL_OK;
+}
+
+// Makes the textures of the view's size.
+static enum orl_result resize(const struct frame *frame)
+{
+    struct soft_layer *layer = frame->soft;
+    const struct orl_camera *c = &frame->view->camera;
+    struct orl_tex_params params = {.width = c->width, .height = c->height, .levels = 1, .format = GL_R16F,
+                                    .linear = true, .tag = "difference of soft splats"};
+    ORL_TRY(orl_frame_target(frame, "soft splats of photographs", true, GL_R16F, &layer->gathered));
+    if (layer->differs && layer->differs->params.width == c->width && layer->differs->params.height == c->height)
+        return ORL_OK;
+    while ((c->width > c->height ? c->width : c->height) >> params.levels > 0)
+        params.levels++;
+    orl_tex_destroy(frame->gpu, &layer->differs);
+    return orl_tex_create(frame->gpu, &params, &layer->differs);
+}
+
+enum orl_result orl_soft_layer_ready(struct frame *frame)
+{
+    size_t made = 0, left = 0;
+    if (!frame->soft->raster.splats)
+        ORL_TRY(load(frame));
+    ORL_TRY(resize(frame));
+    for (size_t i = 0; i < frame->chosen_count; i++) {
+        if (frame->photos->states[frame->chosen[i]].has_soft)
+            continue;
+        if (frame->progressive && made > 0) {
+            left++;
+            continue;
+        }
+        ORL_TRY(keep(frame, frame->chosen[i]));
+        made++;
+    }
+    if (left > 0 || frame->chosen_count == 0) {
+        if (frame->progressive)
+            frame->progressive->missing += left;
+        frame->soft = NULL;
+    }
+    return ORL_OK;
+}
+
+// --- in the view ---
+
+static double coarse_pixels_of_view(const struct frame *frame)
+{
+    double sum = 0;
+    for (size_t i = 0; i < frame->chosen_count; i++) {
+        const struct orl_camera *c = &frame->photos->states[frame->chosen[i]].color_camera;
+        sum += coarse_pixels(c) / c->fx;
+    }
+    return sum / (double)frame->chosen_count * frame->view->camera.fx;
+}
+
+static void dispatch(const struct frame *frame, struct orl_dispatch d)
+{
+    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
+    orl_gpu_dispatch(frame->gpu, &d);
+}
+
+enum orl_result orl_soft_layer_mix(const struct frame *frame)
+{
+    struct soft_layer *layer = frame->soft;
+    struct soft_block block;
+    orl_pass_begin(frame->gpu, "soft splats");
+    enum orl_result result = draw(frame, frame->view, coarse_pixels_of_view(frame), &block);
+    if (result == ORL_OK) {
+        dispatch(frame, (struct orl_dispatch){
+            .prog = orl_prog_get(frame->gpu, "soft/compare.comp", NULL, NULL),
+            .params = &block, .params_size = sizeof block,
+            .textures = {layer->raster.blended},
+            .images = {{layer->gathered, 0, GL_READ_ONLY}, {layer->differs, 0, GL_WRITE_ONLY}},
+            .barrier = GL_TEXTURE_FETCH_BARRIER_BIT});
+        orl_tex_make_mipmaps(layer->differs, 0);
+        dispatch(frame, (struct orl_dispatch){
+            .prog = orl_prog_get(frame->gpu, "soft/mix.comp", NULL, NULL),
+            .params = &block, .params_size = sizeof block, .textures = {layer->differs},
+            .images = {[1] = {frame->picture, 0, GL_READ_WRITE}, {layer->raster.blended, 0, GL_READ_ONLY}},
+            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
+    }
+    orl_pass_end(frame->gpu);
+    return result;
+}
+
+void orl_soft_layer_finish(struct orl_gpu *gpu, struct soft_layer *layer)
+{
+    orl_soft_raster_finish(gpu, &layer->raster);
+    orl_tex_destroy(gpu, &layer->gathered);
+    orl_tex_destroy(gpu, &layer->differs);
+}

@@ -1,0 +1,28 @@
+// Private to src/render: the scene's soft splats (src/soft) in the frame's picture. Where the surface is wrong, a
+// picture blended from photographs has its structure in wrong places. The splats show how much: what they show in those
+// photographs, blended in the same way, then differs from what they show in the view.
+#ifndef ORL_RENDER_SOFT_LAYER_H
+#define ORL_RENDER_SOFT_LAYER_H
+
+#include "render/frame/frame.h"
+#include "soft/soft_raster.h"
+
+// Zero-initialised, it holds nothing: the splats are read with the first frame that shows them.
+struct soft_layer {
+    struct orl_soft_raster raster;
+    // Owned, of the view's size, R16F: the luma of splats in photographs, blended, < 0: none; mipmapped, how far that
+    // in the view differs.
+    struct orl_tex *gathered, *differs;
+};
+
+// True if the frame's picture shows soft splats.
+bool orl_soft_layer_shows(const struct frame *frame);
+// Makes the layer of a frame whose photographs are chosen ready, with the splats as each of them shows them. In a
+// progressive frame it is one photograph, and while others lack it, frame->soft becomes NULL.
+// ORL_ERR_NOT_FOUND: the scene has none (oriel refine).
+enum orl_result orl_soft_layer_ready(struct frame *frame) ORL_CHECK_RESULT;
+// Corrects the frame's finished picture.
+enum orl_result orl_soft_layer_mix(const struct frame *frame) ORL_CHECK_RESULT;
+void orl_soft_layer_finish(struct orl_gpu *gpu, struct soft_layer *layer);
+
+#endif
