@@ -19,6 +19,6 @@ vec4 smooth_level(sampler2D tex, vec2 at, float level)
 vec4 coarse_at(sampler2D tex, ivec2 at)
 {
     vec2 place = (vec2(at) + 0.5) / vec2(view_size);
-    float level = floor(mean_level);
-    return mix(smooth_level(tex, place, level), smooth_level(tex, place, level + 1.0), mean_level - level);
+    float last = float(textureQueryLevels(tex) - 1), mean = min(mean_level, last), level = floor(mean);
+    return mix(smooth_level(tex, place, level), smooth_level(tex, place, min(level + 1.0, last)), mean - level);
 }

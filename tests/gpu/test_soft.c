@@ -230,7 +230,7 @@ static void show_splats(struct orl_tex *blended, size_t open, size_t white)
     orl_tex_make_mipmaps(blended, 0);
 }
 
-// What splats show is kept as luma; what is open is as what they show around it, and beyond the photograph there is what
+// What splats show is kept as luma; what is open is as what they show around it; beyond the photograph there is what
 // its border shows.
 static void test_keep(void **state)
 {
@@ -253,11 +253,13 @@ static void test_keep(void **state)
 }
 
 // Corrects by `gathered` and mixes in `splats` of the splats.
-static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, float picture[SIDE * SIDE][4])
+static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, float level,
+                float picture[SIDE * SIDE][4])
 {
     struct orl_tex *blended = make_picture(GL_RGBA32F, 6, false), *other = make_picture(GL_R16F, 1, false);
     struct orl_tex *differs = make_picture(GL_R16F, 6, false), *own = make_picture(GL_RGBA16F, 1, false);
-    const struct soft_block block = {.view_size = {SIDE, SIDE}, .correct_share = 0.5f, .mix_share = splats, .mean_level = 1.5f};
+    const struct soft_block block = {.view_size = {SIDE, SIDE}, .correct_share = 0.5f, .mix_share = splats,
+                                     .mean_level = level};
     show_splats(blended, open, SIDE * SIDE);
     orl_tex_write(other, 0, 0, GL_RED, GL_FLOAT, gathered);
     orl_tex_write(own, 0, 0, GL_RGBA, GL_FLOAT, picture);
@@ -297,14 +299,14 @@ static void test_mix(void **state)
         for (int c = 0; c < 4; c++)
             picture[i][c] = c == 2 ? 3 : 0.25f;
     }
-    mix(gathered, SIDE * SIDE, 0, picture);
+    mix(gathered, SIDE * SIDE, 0, 1.5f, picture);
     for (size_t i = 0; i < SIDE * SIDE; i++)
         for (int c = 0; c < 4; c++)
             assert_float_equal(picture[i][c], c == 2 ? 3 : 0.25, 2e-3);
 
     for (size_t i = 0; i < SIDE * SIDE; i++)
         gathered[i] = i == MIDDLE ? 0.25f : i == 4 * SIDE + 4 ? -1 : 0.5f;
-    mix(gathered, 4 * SIDE + 24, 0, picture);
+    mix(gathered, 4 * SIDE + 24, 0, 1.5f, picture);
     for (size_t i = 0; i < SIDE * SIDE; i++)
         if (i / SIDE < 8 || i / SIDE > 24) // far from the pixel that differs
             assert_float_equal(picture[i][0], 0.25, 2e-3);
@@ -313,11 +315,16 @@ static void test_mix(void **state)
     assert_float_equal(picture[MIDDLE][1], picture[MIDDLE][0], 1e-3);
     assert_true(picture[MIDDLE][2] > 2.9f && picture[MIDDLE][3] == 0.25f);
 
+    // Where the coarse part is wider than the view, it is the view's mean.
+    double start = encoded((double)picture[MIDDLE][0]);
+    mix(gathered, 4 * SIDE + 24, 0, 20, picture);
+    assert_float_equal(encoded((double)picture[MIDDLE][0]) - start, 0.125, 2e-3);
+
     // What splats cover is mixed, and what they leave open stays.
     for (size_t i = 0; i < SIDE * SIDE; i++)
         gathered[i] = 0.5f;
     const float before = picture[0][0];
-    mix(gathered, 0, 0.5f, picture);
+    mix(gathered, 0, 0.5f, 1.5f, picture);
     assert_float_equal(picture[0][0], before, 1e-3);
     assert_float_equal(encoded((double)picture[1][0]), (encoded(0.25) + 0.5) / 2, 2e-3);
 }

@@ -25,7 +25,8 @@ static enum orl_result load(const struct frame *frame)
     char *path = orl_format(log, "%s/%s", frame->scene->dir, ORL_SOFT_NAME);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (path && !orl_path_is_file(path))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws without", path, frame->scene->dir);
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws "
+                          "without", path, frame->scene->dir);
     ORL_THEN(result, orl_soft_read(log, path, &model));
     ORL_THEN(result, orl_soft_raster_init(frame->gpu, &model, &frame->soft->raster));
     orl_soft_finish(&model);
