@@ -104,6 +104,8 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
 void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **tex);
 // True if the device can sample textures of this compressed format.
 bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format);
+// The number of mip levels down to one texel.
+int orl_mip_levels(int width, int height);
 // Bytes of one layer with all its levels.
 size_t orl_tex_layer_bytes(const struct orl_tex_params *params);
 // Writes tightly packed pixels of a client format and type, such as GL_RGB, GL_UNSIGNED_BYTE.

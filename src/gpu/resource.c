@@ -119,6 +119,14 @@ bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
     return supported == GL_TRUE;
 }
 
+int orl_mip_levels(int width, int height)
+{
+    int levels = 1;
+    while ((width > height ? width : height) >> levels > 0)
+        levels++;
+    return levels;
+}
+
 size_t orl_tex_layer_bytes(const struct orl_tex_params *params)
 {
     size_t bytes = 0, block = block_bytes(params->format);

@@ -75,12 +75,12 @@ static enum orl_result fit_target(struct orl_gpu *gpu, struct orl_soft_raster *r
 {
     if (raster->blended && raster->blended->params.width == width && raster->blended->params.height == height)
         return ORL_OK;
-    struct orl_tex_params params = {.width = width, .height = height, .levels = 1, .format = GL_RGBA32F,
-                                    .linear = true, .owner = ORL_OWNER_FRAME, .tag = "blended soft splats"};
-    while ((width > height ? width : height) >> params.levels > 0)
-        params.levels++;
     orl_tex_destroy(gpu, &raster->blended);
-    return orl_tex_create(gpu, &params, &raster->blended);
+    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height,
+                                                        .levels = orl_mip_levels(width, height), .format = GL_RGBA32F,
+                                                        .linear = true, .owner = ORL_OWNER_FRAME,
+                                                        .tag = "blended soft splats"},
+                          &raster->blended);
 }
 
 enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,

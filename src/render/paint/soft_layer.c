@@ -85,13 +85,12 @@ static enum orl_result resize(const struct frame *frame)
 {
     struct soft_layer *layer = frame->soft;
     const struct orl_camera *c = &frame->view->camera;
-    struct orl_tex_params params = {.width = c->width, .height = c->height, .levels = 1, .format = GL_R16F,
-                                    .linear = true, .tag = "difference of soft splats"};
+    const struct orl_tex_params params = {.width = c->width, .height = c->height,
+                                          .levels = orl_mip_levels(c->width, c->height), .format = GL_R16F,
+                                          .linear = true, .tag = "difference of soft splats"};
     ORL_TRY(orl_frame_target(frame, "soft splats of photographs", true, GL_R16F, &layer->gathered));
     if (layer->differs && layer->differs->params.width == c->width && layer->differs->params.height == c->height)
         return ORL_OK;
-    while ((c->width > c->height ? c->width : c->height) >> params.levels > 0)
-        params.levels++;
     orl_tex_destroy(frame->gpu, &layer->differs);
     return orl_tex_create(frame->gpu, &params, &layer->differs);
 }

@@ -73,14 +73,6 @@ static struct slot_size slot_size(const struct photos *photos, int divide)
     return size;
 }
 
-static int mip_levels(int width, int height)
-{
-    int levels = 1;
-    for (int side = larger(width, height); side > 1; side /= 2)
-        levels++;
-    return levels;
-}
-
 // Colour of all slots as textures: of textures=ycc, `chroma` is the second one.
 static struct orl_tex_params color_params(const struct photos *photos,
                                           const struct slot_size *size, bool chroma)
@@ -89,7 +81,7 @@ static struct orl_tex_params color_params(const struct photos *photos,
     int height = chroma ? (size->height + 1) / 2 : size->height;
     return (struct orl_tex_params){
         .width = width, .height = height, .layers = photos->slot_count,
-        .levels = mip_levels(width, height),
+        .levels = orl_mip_levels(width, height),
         .format = chroma ? GL_COMPRESSED_RG_RGTC2 : photos->format, .linear = true,
         .owner = ORL_OWNER_PHOTOGRAPHS, .tag = chroma ? "photograph chroma" : "photographs"};
 }
@@ -351,7 +343,7 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
 {
     struct orl_tex *full = NULL;
     struct orl_tex_params params = {.width = image->width, .height = image->height,
-                                    .levels = mip_levels(image->width, image->height),
+                                    .levels = orl_mip_levels(image->width, image->height),
                                     .format = to->params.format,
                                     .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph"};
     enum orl_result result = orl_tex_create(gpu, &params, &full);
