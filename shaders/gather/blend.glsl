@@ -71,9 +71,9 @@ float sight_weight(ranking r, int k, spot s)
 const float GUESS_SEVERITY = 4.0;
 
 // Colour, and 1 if there is a sample; samples: colour, weight; blur: for estimated depth. Samples far
-// from the consensus lose weight, which `samples` then hold: pedestrians, leaves, reflections. The square roots of the weights
-// make it a consensus of all photographs rather than of the best one; the square roots of light make
-// differences roughly perceptually uniform.
+// from the consensus lose weight: pedestrians, leaves, reflections. `samples` receives the weights that
+// are left. The square roots of the weights make it a consensus of all photographs
+// rather than of the best one; the square roots of light make differences roughly perceptually uniform.
 vec4 blend(spot s, ranking r, inout vec4 samples[KEPT], out float blur)
 {
     vec4 vote = vec4(0.0), sum = vec4(0.0);

@@ -23,7 +23,7 @@ enum { GRID = 4, FAR_VIEWS = 3 };
 enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
 static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f, 1};
-static const size_t MIX_SHARES = 5; // of them for the second option
+static const size_t MIX_SHARES = 5; // so many of them are tried for opt.soft_mix
 static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
 static const double PIXELS_OF_SPLAT = 6; // of photographs, at least: twice as many splats make pictures no better
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
@@ -268,7 +268,7 @@ static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, double par
     const struct orl_soft_descent_params params = {
         .steps = (int)ceil(part * r->params->steps * (double)r->count), .first_size = first_size,
         .seed = r->params->seed, .budget_s = part * r->params->budget_s, .progress = r->params->progress};
-    char *path = orl_format(r->log, "%s/%s", r->scene->dir, ORL_SOFT_NAME);
+    char *path = orl_path_join(r->log, r->scene->dir, ORL_SOFT_NAME);
     enum orl_result result = path ? orl_soft_descend(gpu, r->photos, r->count, &params, &r->model, &made)
                                   : ORL_ERR_MEMORY;
     if (result == ORL_OK) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "scene/ply.h"
 
 // Standard deviation of a disc's splat, in radii of the disc, and of its third axis as a part of the others.
@@ -90,15 +91,15 @@ static double triangle_area(const struct orl_mesh *mesh, size_t i, float normal[
 {
     const float *a = mesh->position[mesh->triangle[i][0]], *b = mesh->position[mesh->triangle[i][1]];
     const float *c = mesh->position[mesh->triangle[i][2]];
-    double n[3], length = 0;
+    double ab[3], ac[3], n[3];
     for (int k = 0; k < 3; k++) {
-        int l = (k + 1) % 3, m = (k + 2) % 3;
-        n[k] = ((double)b[l] - a[l]) * ((double)c[m] - a[m]) - ((double)b[m] - a[m]) * ((double)c[l] - a[l]);
-        length += n[k] * n[k];
+        ab[k] = (double)b[k] - (double)a[k];
+        ac[k] = (double)c[k] - (double)a[k];
     }
-    length = sqrt(length);
+    orl_cross3(ab, ac, n);
+    double length = orl_normalize3(n);
     for (int k = 0; k < 3; k++)
-        normal[k] = length > 0 ? (float)(n[k] / length) : 0;
+        normal[k] = (float)n[k];
     return length / 2;
 }
 

@@ -22,7 +22,7 @@ static enum orl_result load(const struct frame *frame)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct orl_soft_model model = {0};
-    char *path = orl_format(log, "%s/%s", frame->scene->dir, ORL_SOFT_NAME);
+    char *path = orl_path_join(log, frame->scene->dir, ORL_SOFT_NAME);
     enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
     if (path && !orl_path_is_file(path))
         result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws "

@@ -118,13 +118,13 @@ static size_t slot_bytes(const struct photos *photos, const struct slot_size *si
     return color_bytes(photos, size) +
            (size_t)size->depth_width * (size_t)size->depth_height *
                (photos->scene->defaults.depth_half ? 2 : 4) +
-           (photos->silhouettes + photos->softens) * color_bytes(&byte, size) +
+           (photos->silhouettes + photos->soft_splats) * color_bytes(&byte, size) +
            (photos->places ? color_bytes(&background, size) : 0);
 }
 
 static bool has_soft_splats(const struct orl_scene *scene)
 {
-    char *path = orl_format(NULL, "%s/%s", scene->dir, ORL_SOFT_NAME);
+    char *path = orl_path_join(NULL, scene->dir, ORL_SOFT_NAME);
     bool has = path && orl_path_is_file(path);
     free(path);
     return has;
@@ -224,7 +224,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     for (size_t i = 0; i < scene->photo_count; i++)
         photos->silhouettes |= photos->states[i].usable && scene->photos[i].masked;
     photos->places = orl_photos_backgrounds(photos);
-    photos->softens = !photos->radiance && has_soft_splats(scene);
+    photos->soft_splats = !photos->radiance && has_soft_splats(scene);
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
     enum orl_textures textures = ORL_TEXTURES_AUTO;
     enum orl_result result = orl_textures_choose(log, scene, params, &textures);

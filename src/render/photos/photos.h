@@ -40,7 +40,7 @@ struct photos {
                                 // It outlives a time step. NULL: none was asked for; owned
     const struct orl_progress *progress; // see struct orl_renderer_params
     size_t uploaded;            // bytes of photographs and masks that went to the device
-    bool silhouettes, places, softens; // methods may ask for mask, for background, for soft
+    bool silhouettes, places, soft_splats; // methods may ask for mask, for background, for soft
     int slot_count, divide;     // divide: photographs are loaded at 1/divide of their size
     unsigned clock;
     int time_step;                 // scene->frame of what is resident
