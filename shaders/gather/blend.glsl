@@ -93,3 +93,12 @@ vec4 blend(spot s, ranking r, inout vec4 samples[KEPT], out float blur)
     blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
     return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
 }
+
+// The luma that soft splats show in the photographs, blended as the colours are. samples: from blend().
+float blend_luma(float shown[KEPT], vec4 samples[KEPT])
+{
+    vec2 luma = vec2(0.0);
+    for (int k = 0; k < KEPT; k++)
+        luma += vec2(shown[k], 1.0) * samples[k].a;
+    return luma.x / luma.y;
+}

@@ -87,10 +87,7 @@ void main()
         for (int n = 0; n < KEPT; n++)
             samples[n] = look(rankings[k], n, spots[k], shown[n]);
         colors[k] = blend(spots[k], rankings[k], samples, own);
-        vec2 luma = vec2(0.0);
-        for (int n = 0; n < KEPT; n++)
-            luma += vec2(shown[n], 1.0) * samples[n].a;
-        lumas[k] = luma.x / luma.y;
+        lumas[k] = blend_luma(shown, samples);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k];
         guess += guessed;

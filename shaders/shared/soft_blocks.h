@@ -32,14 +32,10 @@ ORL_BLOCK(soft_block)
     IVEC2(view_size);   // pixels
     INT(splat_count);
     INT(tiles_across);
-    FLOAT(low_pass);    // variance that every splat's projection gains, pixels^2
     FLOAT(smooths);     // 1: no splat is drawn sharper than the photographs that it was adjusted to; else 0
     FLOAT(correct_share); // of the difference that the splats make, in the frame's picture
     FLOAT(mix_share);   // of the splats themselves in it
     FLOAT(mean_level);  // mip level of a difference that is its coarse part
-    FLOAT(unused_1);
-    FLOAT(unused_2);
-    FLOAT(unused_3);
 };
 #endif
 

@@ -1,6 +1,5 @@
-// The coarse part of a mipmapped picture: its mean over pixels of level soft.mean_level.
-#define BLOCK_SOFT
-#include "shared/soft_blocks.h"
+// The coarse part of a mipmapped picture, for the renderer and for the page: its mean over pixels of level mean_level,
+// which the file that includes this one defines.
 
 // A level under the cubic B-spline, from four bilinear samples (Sigg and Hadwiger 2005). Bilinear samples of a coarse
 // level would show its pixels.
@@ -18,7 +17,7 @@ vec4 smooth_level(sampler2D tex, vec2 at, float level)
 
 vec4 coarse_at(sampler2D tex, ivec2 at)
 {
-    vec2 place = (vec2(at) + 0.5) / vec2(view_size);
-    float last = float(textureQueryLevels(tex) - 1), mean = min(mean_level, last), level = floor(mean);
+    vec2 size = vec2(textureSize(tex, 0)), place = (vec2(at) + 0.5) / size;
+    float last = floor(log2(max(size.x, size.y)) + 1e-3), mean = min(mean_level, last), level = floor(mean);
     return mix(smooth_level(tex, place, level), smooth_level(tex, place, min(level + 1.0, last)), mean - level);
 }

@@ -1,10 +1,8 @@
 // The luma (ITU-R BT.601, of sRGB) that soft splats show in a pixel. What passes all of them is as what they show around
-// it.
+// it. blended: mipmapped; sRGB colour, what passes.
 #include "soft/coarse.glsl"
 
-layout(binding = 0) uniform sampler2D blended; // mipmapped: sRGB colour, what passes
-
-float shown_at(ivec2 at)
+float shown_at(sampler2D blended, ivec2 at)
 {
     vec4 own = texelFetch(blended, at, 0), around = coarse_at(blended, at);
     vec3 color = own.rgb + own.a * around.rgb / max(1.0 - around.a, 1e-3);

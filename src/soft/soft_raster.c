@@ -5,9 +5,6 @@
 
 #include "core/memory.h"
 
-// Variance that every splat's projection gains, pixels^2, so that none is narrower than a pixel (Kerbl 2023).
-static const float LOW_PASS = 0.3f;
-
 enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf)
 {
     if (*buf && (*buf)->size >= size)
@@ -59,7 +56,6 @@ static struct soft_block block_of(const struct orl_soft_raster *raster, const st
         .view_size = {c->width, c->height},
         .splat_count = (int)raster->count,
         .tiles_across = (int)orl_groups((size_t)c->width, ORL_SOFT_TILE),
-        .low_pass = LOW_PASS,
     };
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);
