@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "oriel/gpu.h"
 #include "render/output/tone.h"
+#include "soft/soft_raster.h"
 #include "walk/publish.h"
 #include "walk/settings.h"
 
@@ -30,6 +31,7 @@ struct site {
     struct orl_room room;            // around the subject, of the first time step: known or a guess
     json_t *settings;                // owned: settings.h
     size_t start;                    // the photograph at which the walk begins unless they say
+    struct orl_soft_raster soft;     // owned: the scene's soft splats, which the page draws; 0 of them: none
     struct orl_publish_report *report;
 };
 
@@ -68,10 +70,18 @@ struct site_range orl_site_range(const struct orl_scene *scene);
 // Writes poster.jpg: the start view, drawn by the renderer.
 enum orl_result orl_site_poster(struct site *site);
 
+// --- soft splats (site_soft.c) ---
+
+// If the scene shows soft splats, prepares site->soft, writes soft/splats.bin, and sets *soft to its part of the
+// manifest, else to NULL.
+enum orl_result orl_site_soft(struct site *site, json_t **soft) ORL_CHECK_RESULT;
+// Writes what the splats show in a photograph.
+enum orl_result orl_site_soft_photo(struct site *site, const struct orl_view *view, const char *path) ORL_CHECK_RESULT;
+
 // --- manifest (site_manifest.c) ---
 
-// Writes manifest.json and takes over its parts. steps: NULL of a scene without silhouettes.
-enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos, json_t *steps);
+// Writes manifest.json and takes over its parts. steps: NULL of a scene without silhouettes; soft: NULL without splats.
+enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos, json_t *steps, json_t *soft);
 
 // The entries that the manifests of a site and of a server have in common.
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,

@@ -16,7 +16,8 @@ static const char *const shared_shaders[] = {
     "gather/consider.glsl", "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl",
     "gather/projection.glsl", "gather/sample/srgb.glsl",
     "proxy/octahedron.glsl", "proxy/push.glsl", "proxy/surfel.glsl", "shared/penalty.h",
-    "shared/pixel.glsl", "shared/srgb.glsl", NULL};
+    "shared/pixel.glsl", "shared/srgb.glsl", "soft/coarse.glsl", "soft/mixed.glsl", "soft/opacity.glsl",
+    "soft/seen.glsl", "soft/shown.glsl", NULL};
 static const size_t FILE_MAX = (size_t)1 << 30;
 
 // --- growing text ---

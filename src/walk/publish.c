@@ -101,11 +101,12 @@ static size_t site_bytes(const struct site *site)
 
 static enum orl_result write_site(struct site *site)
 {
-    json_t *points = NULL, *photos = NULL, *steps = NULL;
+    json_t *points = NULL, *photos = NULL, *steps = NULL, *soft = NULL;
     enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
     ORL_THEN(result, make_folders(site));
     ORL_THEN(result, orl_site_page(site));
     ORL_THEN(result, orl_site_scene_points(site, &points));
+    ORL_THEN(result, orl_site_soft(site, &soft));
     ORL_THEN(result, orl_site_photos(site, &photos));
     ORL_THEN(result, orl_site_poster(site));
     if (result == ORL_OK && site->carves)
@@ -113,11 +114,12 @@ static enum orl_result write_site(struct site *site)
     if (result == ORL_OK) {
         size_t poster;
         site->report->first_bytes += find_bytes(site, "poster.jpg", &poster) ? poster : 0;
-        return orl_site_manifest(site, points, photos, steps);
+        return orl_site_manifest(site, points, photos, steps, soft);
     }
     json_decref(points);
     json_decref(photos);
     json_decref(steps);
+    json_decref(soft);
     return result;
 }
 
@@ -176,6 +178,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
 end:
     orl_new_dir_abort(log, &dir);
     orl_renderer_destroy(&site.renderer);
+    orl_soft_raster_finish(gpu, &site.soft);
     json_decref(site.settings);
     free(title);
     return result;

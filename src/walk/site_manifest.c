@@ -110,13 +110,13 @@ json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings,
                      (json_int_t)scene->frame_count);
 }
 
-enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos, json_t *steps)
+enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos, json_t *steps, json_t *soft)
 {
     json_t *root = orl_walk_manifest(site->scene, site->settings, site->params->title,
                                      site->start);
-    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o*}", "poster", orl_site_file(site, "poster.jpg"),
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o*, s:o*}", "poster", orl_site_file(site, "poster.jpg"),
                              "options", options_json(&site->render), "points", points, "photos",
-                             photos, "steps", steps);
+                             photos, "steps", steps, "soft", soft);
     if (!root || !more || json_object_update(root, more) != 0) {
         json_decref(root);
         json_decref(more);

@@ -228,15 +228,18 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
     struct orl_camera c = within(&photo->view.camera, site->params->photo_side);
     struct orl_view depth_view = {.camera = within(&c, DEPTH_SIDE_MAX),
                                   .cam_from_world = photo->view.cam_from_world};
-    char picture[64], thumb[64], depth[64];
+    char picture[64], thumb[64], depth[64], soft[64];
     float nearest = 1;
     snprintf(picture, sizeof picture, "%sphotos/%05zu.jpg", site->folder, number);
     snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
     snprintf(depth, sizeof depth, "%sdepth/%05zu.png", site->folder, number);
+    snprintf(soft, sizeof soft, "soft/%05zu.jpg", number);
     enum orl_result result = site->params->radiance
                                  ? write_radiance(site, index, &c, picture, thumb)
                                  : write_pictures(site, index, &c, picture, thumb);
     ORL_THEN(result, write_depth(site, index, &depth_view, depth, &nearest));
+    if (result == ORL_OK && site->soft.count)
+        result = orl_site_soft_photo(site, &(struct orl_view){c, photo->view.cam_from_world}, soft);
     json_t *depth_file = result == ORL_OK ? orl_site_file(site, depth) : NULL;
     if (result != ORL_OK || !depth_file)
         return result != ORL_OK ? result : ORL_ERR_IO;
@@ -248,11 +251,11 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
     // Radiance has the scene's exposure, and no vignetting.
     static const float one[3] = {1, 1, 1}, none[3] = {0};
     bool radiance = site->params->radiance;
-    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o}", "gain",
+    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o*}", "gain",
                              vector_json(radiance ? one : photo->gain), "vignette",
                              vector_json(radiance ? none : photo->vignette), "picture",
                              orl_site_file(site, picture), "thumb", orl_site_file(site, thumb),
-                             "depth", depth_file);
+                             "depth", depth_file, "soft", site->soft.count ? orl_site_file(site, soft) : NULL);
     if (*out && json_object_update_new(*out, more) != 0) {
         json_decref(*out);
         *out = NULL;

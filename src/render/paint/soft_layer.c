@@ -1,12 +1,8 @@
 #include "render/paint/soft_layer.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "render/photos/photos.h"
-#include "scene/manifest.h"
 #include "soft/soft_ply.h"
 
 // The coarse part of a difference is its mean over a photograph's longer side over this: colours of splats are
@@ -20,30 +16,20 @@ bool orl_soft_layer_shows(const struct frame *frame)
 
 static enum orl_result load(const struct frame *frame)
 {
-    const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct orl_soft_model model = {0};
-    char *path = orl_path_join(log, frame->scene->dir, ORL_SOFT_NAME);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && !orl_path_is_file(path))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws "
-                          "without", path, frame->scene->dir);
-    ORL_THEN(result, orl_soft_read(log, path, &model));
+    enum orl_result result = orl_soft_read_scene(orl_gpu_log(frame->gpu), frame->scene->dir, &model);
     ORL_THEN(result, orl_soft_raster_init(frame->gpu, &model, &frame->soft->raster));
     orl_soft_finish(&model);
-    free(path);
     return result;
 }
 
 // Draws the splats into a view, in which what is coarse in photographs is `pixels` wide.
-static enum orl_result draw(const struct frame *frame, const struct orl_view *view, double pixels,
-                            struct soft_block *block)
+static enum orl_result draw(struct orl_gpu *gpu, struct orl_soft_raster *raster, const struct orl_view *view,
+                            double pixels, struct soft_block *block)
 {
-    struct orl_soft_raster *raster = &frame->soft->raster;
-    ORL_TRY(orl_soft_raster_draw(frame->gpu, raster, view, true, block));
+    ORL_TRY(orl_soft_raster_draw(gpu, raster, view, true, block));
     orl_tex_make_mipmaps(raster->blended, 0);
     block->mean_level = (float)fmax(log2(pixels), 0);
-    block->correct_share = frame->params->soft;
-    block->mix_share = frame->params->soft_mix;
     return ORL_OK;
 }
 
@@ -54,27 +40,34 @@ static double coarse_pixels(const struct orl_camera *camera)
 
 // --- in photographs ---
 
+enum orl_result orl_soft_layer_keep(struct orl_gpu *gpu, struct orl_soft_raster *raster, const struct orl_view *view,
+                                    struct orl_tex *slots, int slot)
+{
+    struct soft_block block;
+    ORL_TRY(draw(gpu, raster, view, coarse_pixels(&view->camera), &block));
+    struct orl_dispatch d = {
+        .prog = orl_prog_get(gpu, "soft/keep.comp", NULL, NULL),
+        .params = &block, .params_size = sizeof block,
+        .textures = {raster->blended},
+        .images = {{slots, 0, GL_WRITE_ONLY}},
+        .image_layers = {slot + 1},
+        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
+    orl_pixel_groups(slots->params.width, slots->params.height, d.groups);
+    orl_gpu_dispatch(gpu, &d);
+    return ORL_OK;
+}
+
 static enum orl_result keep(const struct frame *frame, size_t photo)
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
     struct orl_tex_params params = photos->color_params;
     const struct orl_view view = {state->color_camera, photos->scene->photos[photo].view.cam_from_world};
-    struct soft_block block;
     params.format = GL_R8;
     params.tag = "soft splats in photographs";
     if (!photos->soft)
         ORL_TRY(orl_tex_create(frame->gpu, &params, &photos->soft));
-    ORL_TRY(draw(frame, &view, coarse_pixels(&view.camera), &block));
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(frame->gpu, "soft/keep.comp", NULL, NULL),
-        .params = &block, .params_size = sizeof block,
-        .textures = {frame->soft->raster.blended},
-        .images = {{photos->soft, 0, GL_WRITE_ONLY}},
-        .image_layers = {state->slot + 1},
-        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(params.width, params.height, d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
+    ORL_TRY(orl_soft_layer_keep(frame->gpu, &frame->soft->raster, &view, photos->soft, state->slot));
     orl_tex_make_mipmaps(photos->soft, state->slot);
     state->has_soft = true;
     return ORL_OK;
@@ -142,7 +135,9 @@ enum orl_result orl_soft_layer_mix(const struct frame *frame)
     struct soft_layer *layer = frame->soft;
     struct soft_block block;
     orl_pass_begin(frame->gpu, "soft splats");
-    enum orl_result result = draw(frame, frame->view, coarse_pixels_of_view(frame), &block);
+    enum orl_result result = draw(frame->gpu, &layer->raster, frame->view, coarse_pixels_of_view(frame), &block);
+    block.correct_share = frame->params->soft;
+    block.mix_share = frame->params->soft_mix;
     if (result == ORL_OK) {
         dispatch(frame, (struct orl_dispatch){
             .prog = orl_prog_get(frame->gpu, "soft/compare.comp", NULL, NULL),

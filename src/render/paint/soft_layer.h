@@ -23,6 +23,9 @@ bool orl_soft_layer_shows(const struct frame *frame);
 enum orl_result orl_soft_layer_ready(struct frame *frame) ORL_CHECK_RESULT;
 // Corrects the frame's finished picture.
 enum orl_result orl_soft_layer_mix(const struct frame *frame) ORL_CHECK_RESULT;
+// Keeps what the splats show in a photograph in a layer of a GL_R8 texture at least as large, but for its mip levels.
+enum orl_result orl_soft_layer_keep(struct orl_gpu *gpu, struct orl_soft_raster *raster, const struct orl_view *view,
+                                    struct orl_tex *slots, int slot) ORL_CHECK_RESULT;
 void orl_soft_layer_finish(struct orl_gpu *gpu, struct soft_layer *layer);
 
 #endif
