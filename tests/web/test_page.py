@@ -129,6 +129,31 @@ class Page(unittest.TestCase):
         self.assertGreaterEqual(psnr(rests, own), 32)
         self.assertGreaterEqual(psnr(rests, own), psnr(moves, own) + 3)
 
+    def test_soft_splats_correct_as_in_the_renderer(self):
+        camera = next(c for c in self.cameras if c["test"])
+        scene, site = self.file("soft"), f"{os.path.dirname(SITE)}/soft"
+        shutil.copytree(SCENE, scene)
+        run(ORIEL, "refine", scene, "--steps", "4", "--splats", "3000", "--size-divide", "2", "--quiet")
+        with open(f"{scene}/scene.json") as file:
+            content = json.load(file)
+        content["tuned"]["oriel"]["settings"] = {"soft": 1, "soft_mix": 0.5}
+        with open(f"{scene}/scene.json", "w") as file:
+            json.dump(content, file)
+        run(ORIEL, "publish", scene, "--out", site, "--quiet")
+        soft, own = self.file("soft.png"), self.file("own-soft.png")
+        try:
+            self.reopen(self.address.replace(self.path, os.path.relpath(site, os.path.dirname(os.path.dirname(SITE)))))
+            self.browser.capture(soft, camera)
+            self.browser.js("oriel.picture.renderer.draw(arguments[0], 0, false)", camera)
+            self.assertTrue(self.browser.js("""
+                const {finished, frame} = oriel.picture.renderer;
+                return finished === frame.composed.textures[0];""")) # while the view moves
+        finally:
+            self.reopen(self.address)
+            shutil.rmtree(site)
+        run(ORIEL, "render", scene, "--at", camera["name"], "--out", own, "--quiet")
+        self.assertGreaterEqual(psnr(soft, own), 35) # 24 without splats
+
     def test_the_window_shows_the_picture(self):
         window, picture = self.file("window.png"), self.file("picture.png")
         style = "document.body.style.visibility = '%s'; document.getElementById('canvas').style.visibility = '%s'"

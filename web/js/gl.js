@@ -19,7 +19,7 @@ const FORMATS = {
 };
 const BYTES = {R16F: 2, R32F: 4, RG32F: 8, RG16F: 4, RGBA8: 4, SRGB8_ALPHA8: 4, RGBA16F: 8, RGBA32F: 16,
                R32UI: 4, RG32UI: 8};
-const FILTERED = new Set(["RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
+const FILTERED = new Set(["R16F", "RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
 
 // Why this browser draws no walk.
 export class NoDevice extends Error {}
@@ -98,6 +98,13 @@ export class Device {
             gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, texture.width, texture.height, gl[format], gl[type], data);
         else
             gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl[format], gl[type], data);
+    }
+
+    // Fills the coarser mip levels of a texture from its first.
+    makeLevels(texture)
+    {
+        this.gl.bindTexture(texture.kind, texture.id);
+        this.gl.generateMipmap(texture.kind);
     }
 
     release(...textures)

@@ -10,6 +10,7 @@ import {isBehind, project} from "./view.js";
 
 const RANK_EVERY = 250; // milliseconds, while moving
 const LOOK_EVERY = 200;
+const SOFT_LAST = 1e3; // urgency of soft splats: behind photographs and points
 const MIDDLE_MAX = 5; // of the scene's distance: a guess may lie a thousand times as far
 const handheld = matchMedia("(pointer: coarse)").matches;
 
@@ -22,16 +23,20 @@ function photoBudget()
 
 function totalBytes(manifest)
 {
+    const soft = manifest.soft ? manifest.photos.reduce((sum, p) => sum + p.soft.bytes, manifest.soft.bytes) : 0;
     const photos = manifest.photos.reduce((sum, p) => sum + p.picture.bytes + p.depth.bytes, 0);
-    return photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, manifest.points.coarse.bytes);
+    return soft + photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, manifest.points.coarse.bytes);
+}
+
+async function decodeFile(files, {file})
+{
+    return createImageBitmap(new Blob([await files.get(file)]), {colorSpaceConversion: "none", premultiplyAlpha: "none"});
 }
 
 // A photograph's picture and its depth.
 function decode(files, photo)
 {
-    const options = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
-    return Promise.all([photo.picture, photo.depth].map(
-        async ({file}) => createImageBitmap(new Blob([await files.get(file)]), options)));
+    return Promise.all([photo.picture, photo.depth].map(file => decodeFile(files, file)));
 }
 
 export class LocalPicture {
@@ -80,6 +85,8 @@ export class LocalPicture {
             this.request(photo);
         manifest.points.files.forEach((file, number) =>
             files.schedule(() => this.pointsUrgency(file), () => this.loadPoints(file, number)));
+        if (manifest.soft)
+            files.schedule(() => this.softUrgency(), () => this.loadSoft());
     }
 
     // --- loading ---
@@ -110,7 +117,30 @@ export class LocalPicture {
         if (begun)
             this.first = null;
         this.renderer.photos.add(photo, ...await (begun || decode(this.files, photo)));
+        if (photo.soft)
+            this.files.schedule(() => this.softUrgency(photo), () => this.loadSoftOf(photo));
         this.onChange();
+    }
+
+    // Soft splats change the picture once the last of their files is there, and the view rests.
+    softUrgency(photo) { return this.hasPhotos ? SOFT_LAST + this.rank.indexOf(photo) : Infinity; }
+
+    async loadSoft()
+    {
+        this.renderer.addSoft(await this.files.get(this.manifest.soft.file));
+        this.softCame();
+    }
+
+    async loadSoftOf(photo)
+    {
+        this.renderer.photos.addSoft(photo, await decodeFile(this.files, photo.soft));
+        this.softCame();
+    }
+
+    softCame()
+    {
+        if (this.complete)
+            this.onChange();
     }
 
     async loadPoints(file, number)
@@ -128,7 +158,7 @@ export class LocalPicture {
         this.rankedAt = now;
         this.eye = camera.eye;
         this.rank = rankPhotos(this.all, camera, this.manifest.distance);
-        for (const photo of this.rank.slice(0, store.slots)) {
+        for (const photo of this.wanted) {
             if (photo.slot >= 0)
                 photo.lastUse = ++store.clock;
             else if (photo.dropped && !this.moving)
@@ -138,11 +168,16 @@ export class LocalPicture {
         this.files.next();
     }
 
+    // The photographs that the view wants, and whether they are here: false until a view is drawn.
+    get wanted() { return this.rank.slice(0, this.renderer.photos.slots); }
+    get hasPhotos() { return this.rankedAt !== undefined && this.wanted.every(photo => photo.slot >= 0); }
+
     // Everything that the view wants is here.
     get complete()
     {
         return this.cloud.loaded === this.cloud.points && (!this.moving || this.moving.complete) &&
-               this.rank.slice(0, this.renderer.photos.slots).every(p => p.slot >= 0);
+               this.wanted.every(photo => photo.slot >= 0 && (photo.hasSoft || !photo.soft)) &&
+               (this.renderer.soft !== null || !this.manifest.soft);
     }
 
     // Good enough to take the poster's place: the photograph that shows most of the view is there, or a

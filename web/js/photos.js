@@ -6,7 +6,7 @@ export function makePhotos(manifest)
     return manifest.photos.map((p, number) => {
         const r = p.cam_from_world.flatMap(row => row.slice(0, 3));
         const t = p.cam_from_world.map(row => row[3]);
-        return {...p, number, r, t, eye: scale(rotateBack(r, t), -1), slot: -1, loading: false, lastUse: 0};
+        return {...p, number, r, t, eye: scale(rotateBack(r, t), -1), slot: -1, hasSoft: false, loading: false, lastUse: 0};
     });
 }
 
@@ -140,6 +140,29 @@ export class PhotoStore {
         depth.close();
         photo.lastUse = ++this.clock;
         photo.slot = slot;
+        photo.hasSoft = false;
+    }
+
+    // What soft splats show in a photograph, a decoded picture, closed here, becomes its alpha.
+    addSoft(photo, picture)
+    {
+        const gl = this.device.gl;
+        if (photo.slot >= 0) {
+            const shown = this.device.texture("RGBA8", this.width, this.height, {levels: this.levels});
+            this.device.write(shown, picture);
+            this.device.makeLevels(shown);
+            gl.colorMask(false, false, false, true);
+            for (let level = 0; level < this.levels; level++) {
+                gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
+                gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, this.color.id, level, photo.slot);
+                this.device.pass(this.programs.softKeep(), {fbo: this.fbo, width: Math.max(this.width >> level, 1),
+                                                            height: Math.max(this.height >> level, 1)}, {shown, level});
+            }
+            gl.colorMask(true, true, true, true);
+            this.device.release(shown);
+            photo.hasSoft = true;
+        }
+        picture.close();
     }
 
     // Another time step of the photograph, whose depth is told by `entry` of the manifest. It stays where it is.
@@ -163,8 +186,7 @@ export class PhotoStore {
             this.unpackRadiance(picture, one);
         else
             this.device.write(one, picture);
-        gl.bindTexture(gl.TEXTURE_2D, one.id);
-        gl.generateMipmap(gl.TEXTURE_2D);
+        this.device.makeLevels(one);
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
         gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.color.id);
         for (let level = 0; level < this.levels; level++) {
@@ -197,7 +219,7 @@ export class PhotoStore {
         this.device.release(packed);
     }
 
-    // What the gather passes are told of the photographs that this view is painted from; how many.
+    // What the gather passes are told of the photographs that this view is painted from, which it returns.
     describe(camera, typical)
     {
         const {ready} = this;
@@ -208,7 +230,7 @@ export class PhotoStore {
             this.rowData.set(describePhoto(photo, camera), 4 * ROW_TEXELS * i);
         });
         this.device.write(this.rows, this.rowData);
-        return chosen.length;
+        return chosen;
     }
 }
 

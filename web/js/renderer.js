@@ -2,6 +2,7 @@
 // shader; the same passes, by compute shaders, make Oriel's own frames (src/render).
 import {add, distance, dot, rotate, scale, sub} from "./math.js";
 import {PhotoStore} from "./photos.js";
+import {coarseLevel, Soft} from "./soft.js";
 
 const TILE = 16;           // pixels that share a list of photographs
 const POINTS_PER_PIXEL = 4; // more are thinned
@@ -13,15 +14,14 @@ export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points
 export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
 const POINTS_LAYER = LAYERS.indexOf("points");
 
-// rests: whether the backdrop stays where it is in the photographs, as behind a turntable
-function makePrograms(device, sources, rests)
+function makePrograms(device, sources, manifest)
 {
     const screen = (file, defines) => device.program(sources, "screen.vert", file, defines);
-    const late = (file, defines) => { // the first picture does without
+    const late = (file, defines, vertex = "screen.vert") => { // the first picture does without
         let made = null;
-        return () => made ||= screen(file, defines);
+        return () => made ||= device.program(sources, vertex, file, defines);
     };
-    const asks = {TILE, ...(rests && {RESTS: 1})};
+    const asks = {TILE, ...(manifest.backdrop === "rests" && {RESTS: 1})};
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
@@ -33,7 +33,9 @@ function makePrograms(device, sources, rests)
         choose: screen("choose.frag", asks), gather: screen("gather.frag", asks),
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: late("show.frag"), radianceUnpack: late("radiance_unpack.frag"),
-        gatherSharp: late("gather.frag", {...asks, BICUBIC: 1}),
+        gatherSharp: late("gather.frag", {...asks, BICUBIC: 1, ...(manifest.soft && {SOFT: 1})}),
+        soft: late("soft.frag", {}, "soft.vert"), softKeep: late("soft_keep.frag"),
+        softCompare: late("soft_compare.frag"), softMix: late("soft_mix.frag"),
     };
 }
 
@@ -47,6 +49,7 @@ class Frame {
         this.width = width;
         this.height = height;
         this.targets = [];
+        this.mipmapped = [];
         const make = (...args) => {
             const target = device.target(...args);
             this.targets.push(target);
@@ -70,9 +73,30 @@ class Frame {
         this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
         this.painted = make(width, height, ["RGBA16F", "RGBA8"]);
         const w = half(width), h = half(height);
-        this.guesses = device.texture("RGBA16F", w, h, {levels: 1 + Math.floor(Math.log2(Math.max(w, h)))});
+        this.guesses = this.withLevels("RGBA16F", w, h);
         this.seeds = make(w, h, [this.fillColor.pulled[0].textures[0], this.guesses]);
         this.composed = make(width, height, ["RGBA16F"]);
+    }
+
+    withLevels(format, width, height)
+    {
+        const levels = 1 + Math.floor(Math.log2(Math.max(width, height)));
+        this.mipmapped.push(this.device.texture(format, width, height, {levels}));
+        return this.mipmapped.at(-1);
+    }
+
+    // For soft splats: what they show, how far that differs from photographs, and the corrected picture, which takes the
+    // place of what was painted.
+    get soft()
+    {
+        if (!this.softTargets) {
+            const make = texture => this.device.target(this.width, this.height, [texture]);
+            const blended = make(this.withLevels("RGBA16F", this.width, this.height));
+            const differs = make(this.withLevels("R16F", this.width, this.height));
+            this.softTargets = {blended, differs, mixed: make(this.painted.textures[0])};
+            this.targets.push(blended, differs, this.softTargets.mixed);
+        }
+        return this.softTargets;
     }
 
     pyramid(make, format)
@@ -89,7 +113,7 @@ class Frame {
     release()
     {
         this.targets.forEach(target => this.device.releaseTarget(target));
-        this.device.release(this.guesses);
+        this.device.release(...this.mipmapped);
     }
 }
 
@@ -99,9 +123,10 @@ export class Renderer {
         this.device = device;
         this.manifest = manifest;
         this.clouds = [cloud]; // and what moves, where something does
-        this.programs = makePrograms(device, sources, manifest.backdrop === "rests");
+        this.programs = makePrograms(device, sources, manifest);
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
                                      manifest.radiance);
+        this.soft = null; // splats, once they are loaded
         this.frame = null;
         this.exposure = 1; // factor on light
         this.tone = 0; // of TONES
@@ -137,9 +162,14 @@ export class Renderer {
                          {...this.values, known: this.supported, far: true,
                           filled: f.fillDepth.pushed[0].textures[0]});
         this.depth = f.depth;
-        this.used = pointsOnly ? 0 : this.gather(camera, o, whole);
+        const photos = pointsOnly ? [] : this.gather(camera, o, whole);
+        this.used = photos.length;
         this.compose(pointsOnly);
+        if (whole && this.soft && photos.length && photos.every(photo => photo.hasSoft))
+            this.correct(camera, o, photos);
     }
+
+    addSoft(data) { this.soft = new Soft(this.device, data, this.manifest.soft.pixel); }
 
     groundAlongRays(camera)
     {
@@ -243,10 +273,10 @@ export class Renderer {
 
     gather(camera, o, whole)
     {
-        const f = this.frame, store = this.photos, count = store.describe(camera, this.values.typical);
+        const f = this.frame, store = this.photos, photos = store.describe(camera, this.values.typical);
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
                         photo_depth: store.depth, slot_size: [store.width, store.height],
-                        last_mip: store.levels - 1, border_px: BORDER_PX, photos: count,
+                        last_mip: store.levels - 1, border_px: BORDER_PX, photos: photos.length,
                         blur_per_radian: o.guess_blur, away: this.awayFromPhotos(camera.eye),
                         candidates: Math.round(o.candidates), outlier_severity: o.outliers > 0 ? 1 / (o.outliers * o.outliers) : 0,
                         photos_per_pixel: Math.round(o.photos_per_pixel),
@@ -255,19 +285,34 @@ export class Renderer {
             values[`opt.${key}`] = value;
         this.device.pass(this.programs.choose, f.tiles, values);
         this.device.pass(whole ? this.programs.gatherSharp() : this.programs.gather, f.painted, values);
-        return count;
+        return photos;
     }
 
     compose(pointsOnly)
     {
-        const gl = this.device.gl, f = this.frame;
+        const f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
                         normals: this.normals, points_only: pointsOnly};
         this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, {factor: 0.25, far: false});
-        gl.bindTexture(gl.TEXTURE_2D, f.guesses.id);
-        gl.generateMipmap(gl.TEXTURE_2D);
+        this.device.makeLevels(f.guesses);
         this.device.pass(this.programs.compose, f.composed,
                          {...colors, far: false, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
+        this.finished = f.composed.textures[0];
+    }
+
+    // By soft splats, as src/render/paint/soft_layer.c does. What is corrected is antialiased.
+    correct(camera, o, photos)
+    {
+        const f = this.frame, {blended, differs, mixed} = f.soft;
+        const values = {mean_level: coarseLevel(camera, photos), correct_share: o.soft, mix_share: o.soft_mix,
+                        blended: blended.textures[0], differs: differs.textures[0], source: f.painted.textures[1],
+                        composed: f.composed.textures[0], depth: this.depth.textures[0]};
+        this.soft.draw(this.programs.soft(), blended, camera);
+        this.device.makeLevels(values.blended);
+        this.device.pass(this.programs.softCompare(), differs, values);
+        this.device.makeLevels(values.differs);
+        this.device.pass(this.programs.softMix(), mixed, values);
+        this.finished = mixed.textures[0];
     }
 
     // The last frame onto a place of its size: the canvas, or {fbo, x, y, width, height}, whose first row is the lowest.
@@ -278,10 +323,12 @@ export class Renderer {
     {
         const f = this.frame;
         this.device.pass(program, target,
-                         {corner: target && target.x !== undefined ? [target.x, target.y] : [0, 0], composed: f.composed.textures[0], depth: this.depth.textures[0],
+                         {corner: target && target.x !== undefined ? [target.x, target.y] : [0, 0],
+                          composed: this.finished, depth: this.depth.textures[0],
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
-                          exposure: this.exposure, tone: this.tone, antialiases: whole && !this.manifest.radiance});
+                          exposure: this.exposure, tone: this.tone,
+                          antialiases: whole && !this.manifest.radiance && this.finished === f.composed.textures[0]});
     }
 
     // A frame of its own as RGBA bytes, top row first.

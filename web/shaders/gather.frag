@@ -13,7 +13,8 @@ uniform int candidates;
 uniform float photos_per_pixel;
 uniform float away; // 1, but less near the place of a photograph that shows what all together give
 layout(location = 0) out vec4 painted; // shared/pixel.glsl, finished
-layout(location = 1) out vec4 source; // r, g: number of the best photograph, high and low byte; a: 1
+// r, g: number of the best photograph, high and low byte; b: SOFT: luma of soft splats in the photographs; a: 1
+layout(location = 1) out vec4 source;
 
 float surface_share(photo source, spot s, vec4 seen, float z)
 {
@@ -50,12 +51,17 @@ void main()
     for (int k = 1; k < KEPT; k++)
         r.next = photos_per_pixel == float(k) ? r.best[k].penalty : r.next;
     vec4 samples[KEPT];
+    float shown[KEPT];
     for (int k = 0; k < KEPT; k++) {
         sight one = r.best[k];
         float weight = sight_weight(r, k, s);
         samples[k] = vec4(0.0);
-        if (weight > 0.0)
-            samples[k] = vec4(photo_ranked(photo_at(one.index), k, one.pixel, one.mip).rgb, weight);
+        shown[k] = 0.0;
+        if (weight > 0.0) {
+            samples[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip);
+            shown[k] = samples[k].a;
+            samples[k].a = weight;
+        }
     }
     float blur;
     vec4 color = blend(s, r, samples, blur);
@@ -64,4 +70,7 @@ void main()
     painted = guessed && blur > 0.0 ? pixel_to_blur(color.rgb, blur) : pixel_finished(color.rgb, !guessed);
     float number = photo_at(r.best[0].index).file.x;
     source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 1.0);
+#ifdef SOFT
+    source.b = blend_luma(shown, samples);
+#endif
 }
