@@ -63,13 +63,8 @@ static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, c
     const struct orl_soft_raster *r = &d->raster;
     const size_t places = (r->count + 1 + r->lists.entries) * sizeof(int);
     const size_t shares = (r->lists.entries ? r->lists.entries : 1) * ORL_SOFT_SHARE_VEC4S * 4 * sizeof(float);
-    ORL_TRY(orl_soft_buffer(gpu, "places of soft splats", places, &d->places));
-    const struct orl_buf *before = d->shares;
-    ORL_TRY(orl_soft_buffer(gpu, "gradients of tiles", shares, &d->shares));
-    if (!d->share_texels || before != d->shares) {
-        orl_tex_destroy(gpu, &d->share_texels);
-        ORL_TRY(orl_tex_view_buffer(gpu, d->shares, GL_RGBA32F, &d->share_texels));
-    }
+    ORL_TRY(orl_soft_buffer(gpu, "places of soft splats", places, &d->places, 0, NULL));
+    ORL_TRY(orl_soft_buffer(gpu, "gradients of tiles", shares, &d->shares, GL_RGBA32F, &d->share_texels));
     orl_buf_write(d->places, 0, places, r->lists.places);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/backward.comp", NULL, NULL), .params = block, .params_size = sizeof *block,

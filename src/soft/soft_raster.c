@@ -5,12 +5,16 @@
 
 #include "core/memory.h"
 
-enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf)
+enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf, GLenum format,
+                                struct orl_tex **view)
 {
     if (*buf && (*buf)->size >= size)
         return ORL_OK;
+    if (view)
+        orl_tex_destroy(gpu, view);
     orl_buf_destroy(gpu, buf);
-    return orl_buf_create(gpu, ORL_OWNER_POINTS, tag, (size + size / 2 + 15) / 16 * 16, NULL, buf);
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, tag, (size + size / 2 + 15) / 16 * 16, NULL, buf));
+    return view ? orl_tex_view_buffer(gpu, *buf, format, view) : ORL_OK;
 }
 
 enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
@@ -99,12 +103,7 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, block->tiles_across, down,
                                 &raster->lists));
     size_t bytes = ((size_t)block->tiles_across * (size_t)down + 1 + raster->lists.entries) * sizeof(int);
-    const struct orl_buf *listed = raster->listed;
-    ORL_TRY(orl_soft_buffer(gpu, "lists of soft splats", bytes, &raster->listed));
-    if (!raster->entries || listed != raster->listed) {
-        orl_tex_destroy(gpu, &raster->entries);
-        ORL_TRY(orl_tex_view_buffer(gpu, raster->listed, GL_R32I, &raster->entries));
-    }
+    ORL_TRY(orl_soft_buffer(gpu, "lists of soft splats", bytes, &raster->listed, GL_R32I, &raster->entries));
     orl_buf_write(raster->listed, 0, bytes, raster->lists.listed);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/blend.comp", NULL, NULL), .params = block, .params_size = sizeof *block,

@@ -28,8 +28,9 @@ void orl_soft_raster_finish(struct orl_gpu *gpu, struct orl_soft_raster *raster)
 enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
                                      const struct orl_view *view, bool smooths,
                                      struct soft_block *block) ORL_CHECK_RESULT;
-// Makes *buf hold at least `size` bytes; what it held is lost when it grows.
-enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size,
-                                struct orl_buf **buf) ORL_CHECK_RESULT;
+// Makes *buf hold at least `size` bytes; what it held is lost when it grows. view: a view of it as texels of `format`
+// that is made with it; NULL: none.
+enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf, GLenum format,
+                                struct orl_tex **view) ORL_CHECK_RESULT;
 
 #endif
