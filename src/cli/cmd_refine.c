@@ -4,14 +4,7 @@
 #include "cli/command.h"
 #include "eval/refine.h"
 
-#define REFINE_OPTIONS(ROW) \
-    ROW(steps, "steps", INT(30, 1, 10000, "N"), "steps for each photograph") \
-    ROW(splats, "splats", INT(300000, 1000, 10000000, "N"), "splats to begin with, at most") \
-    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of the photographs' size") \
-    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
-        "start no step after so long; default: none") \
-    ROW(seed, "seed", INT(1, 0, 1000000, "N"), "of all random choices")
-COMMAND_OPTIONS(refine_options, REFINE_OPTIONS)
+COMMAND_OPTIONS(refine_options, ORL_REFINE_OPTIONS)
 
 static void print(const struct orl_refine_report *r)
 {
@@ -30,9 +23,7 @@ static enum orl_result run_refine(struct call *call)
 {
     const struct refine_options *o = call->options;
     struct orl_refine_report report = {0};
-    struct orl_refine_params params = {
-        .size_divide = o->size_divide, .steps = o->steps, .splats = o->splats, .budget_s = o->budget_s,
-        .seed = (uint64_t)o->seed, .progress = call->progress};
+    struct orl_refine_params params = {ORL_REFINE_OPTIONS(ORL_OPTION_COPY) .progress = call->progress};
     enum orl_result result = command_scene(call, NULL);
     ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0},
                                      &params.choice));
@@ -50,6 +41,7 @@ const struct command command_refine = {
     .summary = "Makes SCENE/soft.ply: ellipsoids of soft opacity that begin at the scene's points and are\n"
                "adjusted by descent on its training photographs. They mend what stereo cannot see. How much of\n"
                "them pictures take is found on photographs that they have not seen, and kept in scene.json;\n"
-               "--set soft=0 draws without them. Held-out photographs take no part.",
+               "--set soft=0 draws without them. Held-out photographs take no part. An interrupted run goes on\n"
+               "when the command is given again.",
     COMMAND_TABLE(refine_options), .inputs_min = 1, .inputs_max = 1, .run = run_refine,
 };

@@ -3,15 +3,17 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "core/color.h"
 #include "core/memory.h"
+#include "core/process.h"
+#include "eval/refine_state.h"
 #include "eval/score.h"
 #include "io/picture.h"
 #include "scene/manifest.h"
 #include "scene/meter.h"
 #include "scene/tuned_settings.h"
-#include "soft/descent.h"
 #include "soft/soft_ply.h"
 
 // Far splats: one of GRID x GRID pixels, as many in all views together as FAR_VIEWS views have open pixels. A
@@ -28,6 +30,7 @@ static const double GAIN_DB = 0.05; // that splats must bring, or else none are 
 static const double PIXELS_OF_SPLAT = 6; // of photographs, at least: twice as many splats make pictures no better
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
+static const double KEEP_EVERY = 20; // the state is kept so many times as long apart as keeping it takes
 
 struct refine {
     const struct orl_log *log;
@@ -36,7 +39,16 @@ struct refine {
     struct orl_soft_photo *photos; // owned: those that are not checks first
     size_t count, checks;
     struct orl_soft_model model;   // owned
+    struct orl_refine_state state;
+    char *state_path;              // owned
+    double keep_s;                 // how long it took to keep the state
 };
+
+// Adds something to the key of the state.
+static void add_key(struct refine *r, const void *data, size_t size)
+{
+    r->state.key = XXH3_64bits_withSeed(data, size, r->state.key);
+}
 
 // --- photographs ---
 
@@ -85,15 +97,18 @@ static enum orl_result read_photo(const struct refine *r, size_t photo, struct o
 
 static enum orl_result read_photos(struct refine *r, bool checks)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < r->scene->photo_count; i++) {
+    for (size_t i = 0; i < r->scene->photo_count; i++) {
         if (r->scene->photos[i].test || orl_heldout_chosen(r->scene, false, r->checks, i) != checks)
             continue;
-        result = read_photo(r, i, &r->photos[r->count++]);
+        struct orl_soft_photo *to = &r->photos[r->count++];
+        ORL_TRY(read_photo(r, i, to));
+        add_key(r, &to->view, sizeof to->view);
+        add_key(r, to->color.data, orl_image_bytes(&to->color));
+        add_key(r, to->use.data, orl_image_bytes(&to->use));
         orl_progress_report(r->params->progress, "photographs", (double)r->count, (double)r->scene->photo_count,
                             r->scene->photos[i].name);
     }
-    return result;
+    return ORL_OK;
 }
 
 // --- far splats ---
@@ -111,7 +126,8 @@ static enum orl_result add_far(struct refine *r, const struct orl_soft_raster *r
     for (int y = GRID / 2; y < c->height; y += GRID)
         for (int x = GRID / 2; x < c->width; x += GRID) {
             size_t pixel = (size_t)y * (size_t)c->width + (size_t)x;
-            if ((double)blended[4 * pixel + 3] < OPEN || orl_soft_random(state) * (double)r->count > FAR_VIEWS)
+            const double views = (double)(r->count - r->checks);
+            if ((double)blended[4 * pixel + 3] < OPEN || orl_soft_random(state) * views > FAR_VIEWS)
                 continue;
             double beyond = orl_soft_random(state), part = orl_soft_random(state);
             double z = (double)far * (beyond < 0.5 ? 1 + 2 * part : 0.6 + 0.6 * part);
@@ -131,11 +147,11 @@ static enum orl_result add_far(struct refine *r, const struct orl_soft_raster *r
 
 static enum orl_result add_all_far(struct refine *r, struct orl_gpu *gpu)
 {
-    uint64_t state = 0xd1342543de82ef95u ^ (r->params->seed + 1) * 0x9e3779b97f4a7c15u;
+    uint64_t state = 0xd1342543de82ef95u ^ ((uint64_t)r->params->seed + 1) * 0x9e3779b97f4a7c15u;
     struct orl_soft_raster raster = {0};
     struct orl_image blended = {0};
     enum orl_result result = orl_soft_raster_init(gpu, &r->model, &raster);
-    for (size_t i = 0; result == ORL_OK && i < r->count; i++) {
+    for (size_t i = 0; result == ORL_OK && i < r->count - r->checks; i++) {
         struct soft_block block;
         const struct orl_camera *c = &r->photos[i].view.camera;
         orl_image_finish(&blended);
@@ -245,71 +261,101 @@ static enum orl_result begin(struct refine *r, double most)
     return result;
 }
 
-static enum orl_result start(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+// Begins, or goes on where an earlier run was cut off.
+static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
 {
+    const struct orl_refine_params *p = r->params;
+    struct orl_refine_report *report = &r->state.report;
     double pixels = 0;
     for (size_t i = 0; i < r->count; i++)
         pixels += (double)r->photos[i].color.width * r->photos[i].color.height;
-    pixels *= (double)(r->count + r->checks) / (double)r->count; // those that wait are as large
-    ORL_TRY(begin(r, fmin(r->params->splats, pixels / PIXELS_OF_SPLAT)));
+    ORL_TRY(begin(r, fmin(p->splats, pixels / PIXELS_OF_SPLAT)));
     if (r->model.count == 0)
         return orl_fail(r->log, ORL_ERR_DATA, "the scene has neither points nor a mesh to make splats of");
     report->points = r->model.count;
+    add_key(r, r->model.splats, r->model.count * sizeof *r->model.splats);
+    const double settings[] = {p->steps, p->budget_s, p->seed};
+    add_key(r, settings, sizeof settings);
+    ORL_TRY(orl_refine_state_read(r->log, r->state_path, &r->state, &r->model));
+    if (r->state.splats > 0) {
+        orl_logf(r->log, ORL_LOG_INFO, "refine: goes on after %d steps", report->steps + r->state.at.steps);
+        return ORL_OK;
+    }
     ORL_TRY(add_all_far(r, gpu));
     report->far = r->model.count - report->points;
     return ORL_OK;
 }
 
-// A part of the descent, on the photographs that have been read, and its splats as SCENE/soft.ply.
-static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, double part, double first_size,
-                               struct orl_refine_report *report)
+static enum orl_result keep_state(struct refine *r)
 {
-    struct orl_soft_descent_report made = {0};
-    const struct orl_soft_descent_params params = {
-        .steps = (int)ceil(part * r->params->steps * (double)r->count), .first_size = first_size,
+    const double start_s = orl_time_s();
+    enum orl_result result = orl_refine_state_write(r->log, r->state_path, &r->state, &r->model);
+    r->keep_s = orl_time_s() - start_s;
+    return result;
+}
+
+// A part of the descent, on the first `photographs` of them, and its splats as SCENE/soft.ply.
+static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, size_t photographs, double part,
+                               double first_size)
+{
+    struct orl_soft_descent_report *at = &r->state.at;
+    struct orl_soft_descent_params params = {
+        .steps = (int)ceil(part * r->params->steps * (double)photographs), .first_size = first_size,
         .seed = r->params->seed, .budget_s = part * r->params->budget_s, .progress = r->params->progress};
-    char *path = orl_path_join(r->log, r->scene->dir, ORL_SOFT_NAME);
-    enum orl_result result = path ? orl_soft_descend(gpu, r->photos, r->count, &params, &r->model, &made)
-                                  : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        orl_soft_drop(&r->model, FADED);
-        report->splats = r->model.count;
-        report->steps += made.steps;
-        report->loss = made.loss;
-        result = orl_soft_write(r->log, path, &r->model);
+    while (!at->done) {
+        params.part_s = KEEP_EVERY * r->keep_s;
+        ORL_TRY(orl_soft_descend(gpu, r->photos, photographs, &params, &r->model, at));
+        if (!at->done)
+            ORL_TRY(keep_state(r));
     }
+    orl_soft_drop(&r->model, FADED);
+    r->state.report.splats = r->model.count;
+    r->state.report.steps += at->steps;
+    r->state.report.loss = at->loss;
+    *at = (struct orl_soft_descent_report){0};
+    char *path = orl_path_join(r->log, r->scene->dir, ORL_SOFT_NAME);
+    enum orl_result result = path ? orl_soft_write(r->log, path, &r->model) : ORL_ERR_MEMORY;
     free(path);
     return result;
 }
 
-static enum orl_result run(struct refine *r, struct orl_gpu *gpu, struct orl_refine_report *report)
+static enum orl_result run(struct refine *r, struct orl_gpu *gpu)
 {
     size_t train;
+    ORL_TRY(orl_dir_sweep(r->log, r->scene->dir)); // a state that was being written
+    r->state_path = orl_path_join(r->log, r->scene->dir, ORL_REFINE_STATE_NAME);
+    ORL_TRY_MEMORY(r->state_path);
     ORL_TRY(orl_validation_check(r->log, r->scene, &train));
     r->checks = (size_t)fmin(fmin(fmax((double)(train / CHECKED), CHECKS_MIN), (double)(train / 2)), CHECKS_MAX);
     if (!(r->photos = orl_array(r->log, train, sizeof *r->photos)))
         return ORL_ERR_MEMORY;
     ORL_TRY(read_photos(r, false));
-    ORL_TRY(start(r, gpu, report));
-    ORL_TRY(descend(r, gpu, FIRST_PART, 1, report));
-    ORL_TRY(find_shares(r, gpu, report));
     ORL_TRY(read_photos(r, true));
-    ORL_TRY(descend(r, gpu, 1 - FIRST_PART, LAST_FIRST_SIZE, report));
-    report->photographs = r->count;
-    return keep_shares(r, report);
+    ORL_TRY(start(r, gpu));
+    if (r->state.part == 0) {
+        ORL_TRY(descend(r, gpu, r->count - r->checks, FIRST_PART, 1));
+        ORL_TRY(find_shares(r, gpu, &r->state.report));
+        r->state.part = 1;
+        ORL_TRY(keep_state(r));
+    }
+    ORL_TRY(descend(r, gpu, r->count, 1 - FIRST_PART, LAST_FIRST_SIZE));
+    r->state.report.photographs = r->count;
+    ORL_TRY(keep_shares(r, &r->state.report));
+    return orl_dir_remove(r->log, r->state_path);
 }
 
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
                            struct orl_refine_report *report)
 {
     struct refine r = {.log = orl_gpu_log(gpu), .scene = scene, .params = params};
-    *report = (struct orl_refine_report){0};
-    enum orl_result result = run(&r, gpu, report);
+    enum orl_result result = run(&r, gpu);
+    *report = r.state.report;
     for (size_t i = 0; i < r.count; i++) {
         orl_image_finish(&r.photos[i].color);
         orl_image_finish(&r.photos[i].use);
     }
     free(r.photos);
+    free(r.state_path);
     orl_soft_finish(&r.model);
     return result;
 }

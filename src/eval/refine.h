@@ -5,15 +5,20 @@
 
 #include "eval/choice.h"
 #include "oriel/gpu.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 #include "oriel/scene.h"
 
+// There are fewer splats for few or small photographs.
+#define ORL_REFINE_OPTIONS(ROW) \
+    ROW(steps, "steps", INT(30, 1, 10000, "N"), "steps for each photograph") \
+    ROW(splats, "splats", INT(300000, 1000, 10000000, "N"), "splats to begin with, at most") \
+    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of the photographs' size") \
+    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
+        "start no step after so long; default: none") \
+    ROW(seed, "seed", SEED, "of all random choices")
 struct orl_refine_params {
-    int size_divide;     // photographs are used at 1/n of their size, [1, 16]
-    int steps;           // per photograph
-    double splats;       // that stand for the points, at most; there are fewer for few or small photographs
-    double budget_s;     // 0: any
-    uint64_t seed;
+    ORL_REFINE_OPTIONS(ORL_OPTION_MEMBER)
     struct orl_choice choice; // the method and options with which pictures are drawn
     const struct orl_progress *progress;
 };
@@ -29,7 +34,8 @@ struct orl_refine_report {
     bool kept;                     // in scene.json; false: the folder has none
 };
 
-// Writes SCENE/soft.ply, and the shares to scene.json. Held-out photographs take no part. ORL_ERR_DATA: the scene has
+// Writes SCENE/soft.ply, and the shares to scene.json. Held-out photographs take no part. Goes on where a run of the same
+// settings was cut off; the result is that of a run that was not, unless a budget ends it. ORL_ERR_DATA: the scene has
 // neither points nor a mesh, or fewer than three training photographs.
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
                            struct orl_refine_report *report) ORL_CHECK_RESULT;

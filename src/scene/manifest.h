@@ -34,6 +34,8 @@ json_t *orl_manifest_ground(const struct orl_ground *ground);
 json_t *orl_manifest_backdrop(bool rests);
 // Of the file of soft splats in a scene, which oriel refine makes.
 #define ORL_SOFT_NAME "soft.ply"
+// Where it goes on, while it has not finished.
+#define ORL_REFINE_STATE_NAME "refine.state"
 // ORL_OK when prepare never worked on this folder. Otherwise logs the first missing stage and
 // returns ORL_ERR_DATA.
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log,

@@ -17,8 +17,9 @@ enum orl_result orl_soft_descent_init(struct orl_gpu *gpu, const struct orl_soft
     const size_t bytes = model->count * sizeof *model->splats;
     *descent = (struct orl_soft_descent){0};
     enum orl_result result = orl_soft_raster_init(gpu, model, &descent->raster);
-    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "mean gradients", bytes, NULL, &descent->mean));
-    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "squared gradients", bytes, NULL, &descent->square));
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "mean gradients", bytes, model->moments, &descent->mean));
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "squared gradients", bytes,
+                                    model->moments ? model->moments + model->count : NULL, &descent->square));
     ORL_THEN(result, orl_tex_view_buffer(gpu, descent->mean, GL_RGBA32F, &descent->mean_texels));
     ORL_THEN(result, orl_tex_view_buffer(gpu, descent->square, GL_RGBA32F, &descent->square_texels));
     if (result != ORL_OK)
@@ -115,14 +116,21 @@ static enum orl_result run(struct orl_gpu *gpu, struct orl_soft_descent *d, cons
                            struct orl_soft_descent_report *report)
 {
     uint64_t state = 0x2545f4914f6cdd1du ^ (params->seed + 1) * 0x9e3779b97f4a7c15u;
-    const double started = orl_time_s();
+    const double started = orl_time_s() - report->spent_s, part_end_s = report->spent_s + params->part_s;
+    const int from = report->steps;
     for (int s = 0; s < params->steps; s++) {
-        if (params->budget_s > 0 && orl_time_s() - started > params->budget_s)
+        report->spent_s = orl_time_s() - started;
+        if ((size_t)s % count == 0) {
+            if (s > from && report->spent_s > part_end_s)
+                return orl_gpu_finish(gpu);
+            shuffle(order, count, &state);
+        }
+        if (s < from)
+            continue; // an earlier call made this step; only the order of the photographs is needed
+        if (params->budget_s > 0 && report->spent_s > params->budget_s)
             break;
         if (orl_progress_cancelled(params->progress))
             return ORL_ERR_CANCELLED;
-        if ((size_t)s % count == 0)
-            shuffle(order, count, &state);
         double loss, share = (double)(s + 1) / params->steps;
         double decay = pow(params->first_size, 1 - share) * pow(LAST_SIZE, share);
         ORL_TRY(orl_soft_descent_step(gpu, d, &photos[order[(size_t)s % count]], (float)decay, &loss));
@@ -130,6 +138,7 @@ static enum orl_result run(struct orl_gpu *gpu, struct orl_soft_descent *d, cons
         report->steps = s + 1;
         orl_progress_report(params->progress, "descent", s + 1, params->steps, NULL);
     }
+    report->done = true;
     return orl_gpu_finish(gpu);
 }
 
@@ -138,17 +147,20 @@ enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_phot
                                  struct orl_soft_descent_report *report)
 {
     ORL_REQUIRE(orl_gpu_log(gpu), count > 0 && model->count > 0);
-    *report = (struct orl_soft_descent_report){0};
+    const size_t bytes = model->count * sizeof *model->splats;
     struct orl_soft_descent descent = {0};
     size_t *order = orl_array(orl_gpu_log(gpu), count, sizeof *order);
-    if (!order)
-        return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++)
+    if (!model->moments)
+        model->moments = orl_array(orl_gpu_log(gpu), 2 * model->count, sizeof *model->moments);
+    enum orl_result result = order && model->moments ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; order && i < count; i++)
         order[i] = i;
-    enum orl_result result = orl_soft_descent_init(gpu, model, &descent);
+    ORL_THEN(result, orl_soft_descent_init(gpu, model, &descent));
     ORL_THEN(result, run(gpu, &descent, photos, order, count, params, report));
     if (result == ORL_OK) {
-        orl_buf_read(descent.raster.splats, 0, model->count * sizeof *model->splats, model->splats);
+        orl_buf_read(descent.raster.splats, 0, bytes, model->splats);
+        orl_buf_read(descent.mean, 0, bytes, model->moments);
+        orl_buf_read(descent.square, 0, bytes, model->moments + model->count);
         result = orl_gpu_finish(gpu);
     }
     orl_soft_descent_finish(gpu, &descent);

@@ -18,15 +18,21 @@ struct orl_soft_descent_params {
     double first_size; // factor on the step sizes of the first step, [0.1, 1]; that of the last one is 0.1
     uint64_t seed;     // of the order of the photographs
     double budget_s;   // no step begins after so long; 0: any
+    double part_s;     // a call ends with the first pass over the photographs that is over after so long
     const struct orl_progress *progress; // NULL: none
 };
 
+// How far a descent has come; zeros: it has not begun.
 struct orl_soft_descent_report {
-    int steps;   // number of steps that were made
-    double loss; // running mean over the last steps
+    int steps;      // number of steps that were made
+    double loss;    // running mean over the last steps
+    double spent_s;
+    bool done;
 };
 
-// Adjusts the model in place. The result is the same for the same seed on the same device.
+// Adjusts the model in place, from where the report says that it is. The caller goes on, in this process or another,
+// with the model, the report and the same photographs and parameters, until the descent is done. The result is the same
+// for the same seed on the same device, in whatever parts it was made.
 enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_photo *photos, size_t count,
                                  const struct orl_soft_descent_params *params, struct orl_soft_model *model,
                                  struct orl_soft_descent_report *report) ORL_CHECK_RESULT;

@@ -160,10 +160,13 @@ void orl_soft_drop(struct orl_soft_model *model, float opacity)
         if (is_kept(model->splats[i], least))
             memmove(model->splats[kept++], model->splats[i], sizeof *model->splats);
     model->count = kept;
+    free(model->moments);
+    model->moments = NULL;
 }
 
 void orl_soft_finish(struct orl_soft_model *model)
 {
     free(model->splats);
+    free(model->moments);
     memset(model, 0, sizeof *model);
 }

@@ -15,6 +15,8 @@ enum { ORL_SOFT_PLACE = 0, ORL_SOFT_OPACITY = 3, ORL_SOFT_SIGMA = 4, ORL_SOFT_PI
 struct orl_soft_model {
     float (*splats)[ORL_SOFT_VALUES]; // owned
     size_t count, capacity;
+    float (*moments)[ORL_SOFT_VALUES]; // owned: running means of the gradients of all splats in a descent, then those of
+                                       // their squares; NULL: zeros
 };
 
 // A splat for one of `every` points, the same for the same seed: a disc of the point's colour that is as
@@ -27,7 +29,7 @@ enum orl_result orl_soft_from_mesh(const struct orl_log *log, const struct orl_m
 // Adds a round splat: place, world; sigma, scene units; sRGB colour, [0, 1].
 enum orl_result orl_soft_add(const struct orl_log *log, struct orl_soft_model *model, const double place[3],
                              double sigma, float opacity, const float rgb[3]) ORL_CHECK_RESULT;
-// Drops splats less opaque than this and those with values that are not finite.
+// Drops splats less opaque than this and those with values that are not finite, and all moments.
 void orl_soft_drop(struct orl_soft_model *model, float opacity);
 void orl_soft_finish(struct orl_soft_model *model);
 

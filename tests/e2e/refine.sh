@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# oriel refine on a workspace made by hand: soft splats that mend the picture of training photographs, the same twice,
-# without a look at held-out ones.
+# oriel refine on a workspace made by hand: soft splats that mend the picture of training photographs, the same twice and
+# when it is killed on the way, without a look at held-out ones.
 set -u
 . "$2/tests/e2e/command_lib"
 
@@ -18,6 +18,18 @@ picture 2 0.3 none.png
 grep -q 'soft.ply: missing; oriel refine' stderr.txt || fail "not said what makes soft splats"
 [ -e none.png ] && fail "a picture without them"
 
+# killed COMMAND...: kills it as soon as it has kept a state that was not there before; false if it ends by itself.
+killed() {
+    local before
+    before=$(stat -c %i ws/refine.state 2>/dev/null)
+    "$@" >stdout.txt 2>stderr.txt &
+    while kill -0 $! 2>/dev/null; do
+        [ "$(stat -c %i ws/refine.state 2>/dev/null || echo "$before")" = "$before" ] || kill -9 $! 2>/dev/null
+        sleep 0.01
+    done
+    ! wait $! 2>/dev/null
+}
+
 refine=("$oriel" refine ws --steps 10 --splats 3000 --size-divide 2)
 runs 0 "${refine[@]}"
 grep -q "; 28 steps on 4 photographs, loss" stdout.txt || fail "other steps or photographs" # 14 on two of them, 14 on all
@@ -25,9 +37,22 @@ grep -q "; 28 steps on 4 photographs, loss" stdout.txt || fail "other steps or p
 grep -q "^2 photographs that .*, and no better with any share of them: " stdout.txt || fail "splats of four photographs are taken"
 [ -s ws/soft.ply ] || fail "no soft.ply"
 cp ws/soft.ply first.ply
+cp stdout.txt first.txt
+kills=0
+while killed "${refine[@]}" && [ $kills -lt 40 ]; do kills=$((kills + 1)); done
+[ $kills -gt 1 ] || fail "killed $kills times only"
+grep -q "refine: goes on after [0-9]* steps" stderr.txt || fail "it does not go on"
+cmp -s first.ply ws/soft.ply || fail "a run that was killed makes other splats"
+cmp first.txt stdout.txt || fail "a run that was killed reports other figures"
+[ -e ws/refine.state ] && fail "a run that has finished leaves its state"
+killed "${refine[@]}" || fail "not killed"
+truncate -s -1 ws/refine.state
 runs 0 "${refine[@]}"
+grep -q "refine.state: .* damaged; refine begins anew" stderr.txt || fail "a damaged state is not named"
 cmp -s first.ply ws/soft.ply || fail "a second run makes other splats"
+killed "${refine[@]}" || fail "not killed"
 runs 0 "${refine[@]}" --seed 2
+grep -q "refine.state: .* other settings" stderr.txt || fail "goes on with another seed"
 cmp -s first.ply ws/soft.ply && fail "the seed does not matter"
 
 picture 0 0 own.png

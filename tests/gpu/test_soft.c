@@ -181,8 +181,8 @@ static void test_descent(void **state)
     assert_int_equal(orl_image_init(NULL, &photo.color, 64, 48, 3, ORL_PIXEL_F32), ORL_OK);
     for (size_t i = 0; i < 64 * 48; i++)
         memcpy(photo.color.f32 + 3 * i, picture.f32 + 4 * i, 3 * sizeof(float));
-    const struct orl_soft_descent_params params = {.steps = 200, .first_size = 1};
-    struct orl_soft_descent_report report;
+    struct orl_soft_descent_params params = {.steps = 200, .first_size = 1, .part_s = HUGE_VAL};
+    struct orl_soft_descent_report report = {0}, parts = {0}, none = {0};
     add(&model, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
     double before = loss_of(&model, &photo, NULL);
     assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &model, &report), ORL_OK);
@@ -190,14 +190,16 @@ static void test_descent(void **state)
     assert_true(loss_of(&model, &photo, NULL) < 0.2 * before);
     assert_float_equal(model.splats[0][ORL_SOFT_PIXEL], 4 / 64.0, 1e-4);
 
-    // The same again, to the bit; and none of it where the photograph shows what stands before the scene.
+    // The same again in parts of a step, to the bit; and none of it where the photograph shows what stands before the scene.
     struct orl_soft_model again = {0}, still = {0};
     add(&again, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
     add(&still, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
-    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &again, &report), ORL_OK);
+    for (params.part_s = 0; !parts.done;)
+        assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &again, &parts), ORL_OK);
     assert_memory_equal(model.splats, again.splats, sizeof *model.splats);
     assert_int_equal(orl_image_init(NULL, &photo.use, 64, 48, 1, ORL_PIXEL_U8), ORL_OK);
-    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &still, &report), ORL_OK);
+    params.part_s = HUGE_VAL;
+    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &still, &none), ORL_OK);
     assert_float_equal(still.splats[0][ORL_SOFT_COLOR], (0.3 - 0.5) / 0.28209479, 1e-4);
     orl_image_finish(&picture);
     orl_image_finish(&photo.color);
