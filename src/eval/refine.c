@@ -30,6 +30,9 @@ static const double GAIN_DB = 0.05; // that splats must bring, or else none are 
 static const double PIXELS_OF_SPLAT = 6; // of photographs, at least: twice as many splats make pictures no better
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
+// Entries in the lists of a view's tiles that device memory is planned for: so many for a splat and for a pixel.
+// Views of the monument have an eighth to a quarter fewer (docs/how/oriel.md).
+enum { SPLAT_ENTRIES = 5, PIXEL_ENTRIES = 4, SPLATS_MIN = 1000 };
 static const double KEEP_EVERY = 20; // the state is kept so many times as long apart as keeping it takes
 
 struct refine {
@@ -208,7 +211,8 @@ static enum orl_result find_shares(struct refine *r, struct orl_gpu *gpu, struct
     struct orl_score best = {0};
     struct orl_render_params render = r->params->choice.params;
     enum orl_result result = orl_validation_load(r->log, r->scene, r->checks, r->params->size_divide, &checks);
-    ORL_THEN(result, orl_renderer_create(gpu, r->scene, NULL, &renderer));
+    const struct orl_renderer_params limits = {.max_vram_bytes = r->params->max_vram_bytes};
+    ORL_THEN(result, orl_renderer_create(gpu, r->scene, &limits, &renderer));
     render.soft = render.soft_mix = 0;
     ORL_THEN(result, orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &best));
     report->checks = checks.count;
@@ -261,20 +265,55 @@ static enum orl_result begin(struct refine *r, double most)
     return result;
 }
 
+// Device memory for so many splats of points and the far ones that there may be, in a view of this size.
+static double memory_need(double splats, int width, int height)
+{
+    const double pixels = (double)width * height, all = splats + FAR_VIEWS * pixels / (GRID * GRID);
+    return (double)orl_soft_descent_bytes((size_t)all, (size_t)(SPLAT_ENTRIES * all + PIXEL_ENTRIES * pixels), width,
+                                          height);
+}
+
+// Makes *splats so many that they fit in device memory.
+static enum orl_result fit_memory(const struct refine *r, int width, int height, double *splats)
+{
+    const double most = (double)r->params->max_vram_bytes, least = memory_need(SPLATS_MIN, width, height);
+    const double asked = memory_need(*splats, width, height), mib = 1 << 20;
+    if (most <= 0 || asked <= most)
+        return ORL_OK;
+    if (least > most)
+        return orl_fail(r->log, ORL_ERR_GPU, "refine: %.0f MiB of device memory are not enough for photographs of "
+                        "%dx%d: the least is %.1f MiB; give a larger --size-divide", most / mib, width, height,
+                        least / mib);
+    double fewer = SPLATS_MIN + (*splats - SPLATS_MIN) * (most - least) / (asked - least);
+    orl_logf(r->log, ORL_LOG_WARNING, "refine: %.0f splats at %dx%d need %.0f MiB of device memory; using %.0f",
+             *splats, width, height, asked / mib, floor(fewer));
+    *splats = floor(fewer);
+    return ORL_OK;
+}
+
 // Begins, or goes on where an earlier run was cut off.
 static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
 {
     const struct orl_refine_params *p = r->params;
     struct orl_refine_report *report = &r->state.report;
-    double pixels = 0;
-    for (size_t i = 0; i < r->count; i++)
-        pixels += (double)r->photos[i].color.width * r->photos[i].color.height;
-    ORL_TRY(begin(r, fmin(p->splats, pixels / PIXELS_OF_SPLAT)));
+    double pixels = 0, splats = p->splats;
+    int width = 0, height = 0;
+    for (size_t i = 0; i < r->count; i++) {
+        const struct orl_image *color = &r->photos[i].color;
+        pixels += (double)color->width * color->height;
+        width = color->width > width ? color->width : width;
+        height = color->height > height ? color->height : height;
+    }
+    splats = fmin(splats, pixels / PIXELS_OF_SPLAT);
+    if (r->scene->points.count > 0)
+        splats = fmin(splats, (double)r->scene->points.count);
+    ORL_TRY(fit_memory(r, width, height, &splats));
+    ORL_TRY(begin(r, splats));
     if (r->model.count == 0)
         return orl_fail(r->log, ORL_ERR_DATA, "the scene has neither points nor a mesh to make splats of");
     report->points = r->model.count;
     add_key(r, r->model.splats, r->model.count * sizeof *r->model.splats);
-    const double settings[] = {p->steps, p->budget_s, p->seed};
+    const double settings[] = {p->steps, p->budget_s, p->seed, (double)p->max_vram_bytes};
     add_key(r, settings, sizeof settings);
     ORL_TRY(orl_refine_state_read(r->log, r->state_path, &r->state, &r->model));
     if (r->state.splats > 0) {
@@ -301,7 +340,8 @@ static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, size_t pho
     struct orl_soft_descent_report *at = &r->state.at;
     struct orl_soft_descent_params params = {
         .steps = (int)ceil(part * r->params->steps * (double)photographs), .first_size = first_size,
-        .seed = r->params->seed, .budget_s = part * r->params->budget_s, .progress = r->params->progress};
+        .seed = r->params->seed, .budget_s = part * r->params->budget_s, .max_bytes = r->params->max_vram_bytes,
+        .progress = r->params->progress};
     while (!at->done) {
         params.part_s = KEEP_EVERY * r->keep_s;
         ORL_TRY(orl_soft_descend(gpu, r->photos, photographs, &params, &r->model, at));

@@ -9,14 +9,15 @@
 #include "oriel/progress.h"
 #include "oriel/scene.h"
 
-// There are fewer splats for few or small photographs.
+// There are fewer splats for few or small photographs, and where device memory is short.
 #define ORL_REFINE_OPTIONS(ROW) \
     ROW(steps, "steps", INT(30, 1, 10000, "N"), "steps for each photograph") \
     ROW(splats, "splats", INT(300000, 1000, 10000000, "N"), "splats to begin with, at most") \
     ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of the photographs' size") \
     ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
         "start no step after so long; default: none") \
-    ROW(seed, "seed", SEED, "of all random choices")
+    ROW(seed, "seed", SEED, "of all random choices") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 struct orl_refine_params {
     ORL_REFINE_OPTIONS(ORL_OPTION_MEMBER)
     struct orl_choice choice; // the method and options with which pictures are drawn
@@ -36,7 +37,7 @@ struct orl_refine_report {
 
 // Writes SCENE/soft.ply, and the shares to scene.json. Held-out photographs take no part. Goes on where a run of the same
 // settings was cut off; the result is that of a run that was not, unless a budget ends it. ORL_ERR_DATA: the scene has
-// neither points nor a mesh, or fewer than three training photographs.
+// neither points nor a mesh, or fewer than three training photographs. ORL_ERR_GPU: max_vram_bytes are not enough.
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
                            struct orl_refine_report *report) ORL_CHECK_RESULT;
 

@@ -42,6 +42,28 @@ void orl_soft_descent_finish(struct orl_gpu *gpu, struct orl_soft_descent *desce
     orl_image_finish(&descent->gradient);
 }
 
+size_t orl_soft_descent_bytes(size_t splats, size_t entries, int width, int height)
+{
+    const size_t vec4 = 4 * sizeof(float), pixels = (size_t)width * (size_t)height;
+    const size_t tiles = (size_t)orl_groups((size_t)width, ORL_SOFT_TILE) * orl_groups((size_t)height, ORL_SOFT_TILE);
+    size_t own = splats * ((3 * ORL_SOFT_VEC4S + ORL_SOFT_SEEN_VEC4S) * vec4 + ORL_SOFT_BOUND_WORDS * sizeof(uint32_t));
+    size_t lists = (splats + tiles + 2 * entries + 2) * sizeof(int) + (entries + 1) * ORL_SOFT_SHARE_VEC4S * vec4;
+    // orl_soft_buffer makes lists larger by a half; the picture, its mip levels and its gradient are less than three.
+    return own + lists + lists / 2 + 3 * pixels * vec4;
+}
+
+static enum orl_result check_memory(struct orl_gpu *gpu, const struct orl_soft_descent *d, const struct orl_camera *c)
+{
+    const struct orl_soft_raster *r = &d->raster;
+    size_t bytes = orl_soft_descent_bytes(r->count, r->lists.entries, c->width, c->height);
+    if (!d->max_bytes || bytes <= d->max_bytes)
+        return ORL_OK;
+    return orl_fail(orl_gpu_log(gpu), ORL_ERR_GPU,
+                    "refine: %zu MiB of device memory are not enough for %zu splats at %dx%d, which need %.1f MiB "
+                    "with the lists of this view: give fewer --splats, or a larger --size-divide", d->max_bytes >> 20, r->count, c->width,
+                    c->height, (double)bytes / (1 << 20));
+}
+
 // Makes what depends on the view's size fit.
 static enum orl_result resize(struct orl_gpu *gpu, struct orl_soft_descent *d, int width, int height)
 {
@@ -92,6 +114,7 @@ enum orl_result orl_soft_descent_step(struct orl_gpu *gpu, struct orl_soft_desce
     const struct orl_log *log = orl_gpu_log(gpu);
     struct soft_block block;
     ORL_TRY(orl_soft_raster_draw(gpu, &d->raster, &photo->view, false, &block));
+    ORL_TRY(check_memory(gpu, d, &photo->view.camera));
     ORL_TRY(resize(gpu, d, photo->view.camera.width, photo->view.camera.height));
     orl_tex_read(d->raster.blended, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&d->picture), d->picture.f32);
     ORL_TRY(orl_gpu_finish(gpu));
@@ -156,6 +179,7 @@ enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_phot
     for (size_t i = 0; order && i < count; i++)
         order[i] = i;
     ORL_THEN(result, orl_soft_descent_init(gpu, model, &descent));
+    descent.max_bytes = params->max_bytes;
     ORL_THEN(result, run(gpu, &descent, photos, order, count, params, report));
     if (result == ORL_OK) {
         orl_buf_read(descent.raster.splats, 0, bytes, model->splats);

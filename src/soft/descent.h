@@ -19,6 +19,7 @@ struct orl_soft_descent_params {
     uint64_t seed;     // of the order of the photographs
     double budget_s;   // no step begins after so long; 0: any
     double part_s;     // a call ends with the first pass over the photographs that is over after so long
+    size_t max_bytes;  // of device memory; 0: any
     const struct orl_progress *progress; // NULL: none
 };
 
@@ -32,10 +33,13 @@ struct orl_soft_descent_report {
 
 // Adjusts the model in place, from where the report says that it is. The caller goes on, in this process or another,
 // with the model, the report and the same photographs and parameters, until the descent is done. The result is the same
-// for the same seed on the same device, in whatever parts it was made.
+// for the same seed on the same device, in whatever parts it was made. ORL_ERR_GPU: max_bytes are not enough.
 enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_photo *photos, size_t count,
                                  const struct orl_soft_descent_params *params, struct orl_soft_model *model,
                                  struct orl_soft_descent_report *report) ORL_CHECK_RESULT;
+
+// Device memory that a descent takes at most, bytes. entries: splats in the lists of all tiles of a view.
+size_t orl_soft_descent_bytes(size_t splats, size_t entries, int width, int height);
 
 // One step's device state, for a test of the gradients.
 struct orl_soft_descent {
@@ -44,6 +48,7 @@ struct orl_soft_descent {
     struct orl_tex *share_texels, *mean_texels, *square_texels; // owned: views of three of these
     struct orl_tex *gradient_target;                 // owned
     struct orl_image picture, gradient;              // owned
+    size_t max_bytes;                                // 0: any
 };
 enum orl_result orl_soft_descent_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
                                       struct orl_soft_descent *descent) ORL_CHECK_RESULT;

@@ -54,6 +54,11 @@ killed "${refine[@]}" || fail "not killed"
 runs 0 "${refine[@]}" --seed 2
 grep -q "refine.state: .* other settings" stderr.txt || fail "goes on with another seed"
 cmp -s first.ply ws/soft.ply && fail "the seed does not matter"
+runs 1 "${refine[@]}" --max-vram 1
+grep -q "refine: 1 MiB of device memory are not enough for photographs of 48x32: the least is 1\." stderr.txt || fail "too little memory"
+runs 0 "$oriel" refine ws --steps 1 --splats 3000 --max-vram 5
+grep -q "refine: 3000 splats at 96x64 need [56] MiB of device memory; using 2[0-9][0-9][0-9]$" stderr.txt || fail "not fewer splats"
+grep -q "splats, of 2[0-9][0-9][0-9] on surfaces" stdout.txt || fail "other splats than it said"
 
 picture 0 0 own.png
 picture 0 0.3 soft.png

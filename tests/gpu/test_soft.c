@@ -210,6 +210,33 @@ static void test_descent(void **state)
     orl_soft_finish(&still);
 }
 
+static void watch_memory(void *priv, const char *step, double done, double total, const char *detail)
+{
+    (void)step, (void)done, (void)total, (void)detail;
+    size_t *most = priv, now = orl_gpu_bytes(gpu);
+    *most = now > *most ? now : *most;
+}
+
+// A descent keeps to the memory that is said to be enough for its lists, and stops where less is given.
+static void test_memory(void **state)
+{
+    (void)state;
+    struct orl_soft_photo photo = photograph(1);
+    struct orl_soft_model model = some_splats();
+    struct orl_soft_descent_report report = {0}, none = {0};
+    size_t most = 0;
+    const struct orl_progress progress = {.report = watch_memory, .priv = &most};
+    const size_t tiles = (WIDTH / ORL_SOFT_TILE) * (HEIGHT / ORL_SOFT_TILE), before = orl_gpu_bytes(gpu);
+    struct orl_soft_descent_params params = {.steps = 3, .first_size = 1, .part_s = HUGE_VAL, .progress = &progress,
+                                             .max_bytes = orl_soft_descent_bytes(SPLATS, SPLATS * tiles, WIDTH, HEIGHT)};
+    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &model, &report), ORL_OK);
+    assert_true(most - before > params.max_bytes / 4 && most - before <= params.max_bytes);
+    params.max_bytes = (most - before) / 2;
+    assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &model, &none), ORL_ERR_GPU);
+    orl_image_finish(&photo.color);
+    orl_soft_finish(&model);
+}
+
 enum { SIDE = 32, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
 
 static struct orl_tex *make_picture(GLenum format, int levels, bool array)
@@ -352,6 +379,7 @@ int main(void)
         cmocka_unit_test(test_splats_blend),
         cmocka_unit_test(test_size_of_the_view),
         cmocka_unit_test(test_descent),
+        cmocka_unit_test(test_memory),
         cmocka_unit_test(test_keep),
         cmocka_unit_test(test_mix),
     };
