@@ -2,12 +2,17 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/process.h"
+#include "eval/refine.h"
+#include "preprocess/drawing.h"
 #include "preprocess/photos/collect.h"
 #include "preprocess/scene_json.h"
 #include "preprocess/stages.h"
+#include "scene/manifest.h"
 
 static enum orl_result read_exposures(struct orl_job *job)
 {
@@ -42,6 +47,42 @@ static enum orl_result begin(struct orl_job *job)
     return orl_stages_begin(job, orl_time_s() - start);
 }
 
+// True once oriel refine has finished with this scene: it keeps in scene.json how much of the splats pictures take, and
+// stages that are done again remove that.
+static bool is_refined(const struct orl_job *job)
+{
+    json_t *root = NULL;
+    char *path = orl_job_path(job, "scene.json");
+    bool kept = path && orl_json_read(job->log, path, &root) == ORL_OK &&
+                json_object_size(json_object_get(root, "tuned")) > 0;
+    json_decref(root);
+    free(path);
+    return kept && orl_job_has(job, ORL_SOFT_NAME) && !orl_job_has(job, ORL_REFINE_STATE_NAME);
+}
+
+// What oriel refine does, for the scene that has been made.
+static enum orl_result refine(struct orl_job *job)
+{
+    struct orl_refine_params params = {ORL_REFINE_OPTIONS(ORL_OPTION_PRESET) .progress = job->progress};
+    struct orl_refine_report report = {0};
+    struct orl_scene *scene = NULL;
+    struct orl_drawing drawing = {0};
+    params.seed = job->params->seed;
+    params.max_vram_bytes = job->params->max_vram_bytes;
+    enum orl_result result = orl_scene_open(job->log, job->dir, &scene);
+    ORL_THEN(result, orl_choice_make(job->log, scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0}, &params.choice));
+    if (result == ORL_OK)
+        orl_drawing_begin(job, scene, "refine: no soft splats are made", &drawing);
+    if (drawing.gpu)
+        result = orl_refine(drawing.gpu, scene, &params, &report);
+    if (result == ORL_OK && drawing.gpu)
+        orl_logf(job->log, ORL_LOG_INFO, "refine: %zu splats; %zu photographs that they had not seen: %.3f dB, %.3f "
+                 "without splats", report.splats, report.checks, report.psnr_db, report.before_psnr_db);
+    orl_drawing_end(&drawing);
+    orl_scene_destroy(&scene);
+    return result;
+}
+
 enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_params *params,
                             const struct orl_progress *progress)
 {
@@ -64,6 +105,10 @@ enum orl_result orl_prepare(const struct orl_log *log, const struct orl_prepare_
     // Only fuse reads the depth maps, so they can go once the scene is complete.
     if (result == ORL_OK && whole && params->keep == ORL_KEEP_MINIMAL)
         result = orl_job_remove(&job, "stereo");
+    if (result == ORL_OK && whole && params->refine && is_refined(&job))
+        orl_logf(log, ORL_LOG_INFO, "refine: done already");
+    else if (result == ORL_OK && whole && params->refine)
+        result = refine(&job);
     orl_job_close(&job);
     return result;
 }

@@ -8,7 +8,8 @@
 
 // Makes the scene in the folder OUT (params->out). COLMAP is found on PATH or named by
 // $ORIEL_COLMAP; its output goes to OUT/logs/colmap.log. OUT opens as a scene only after all
-// stages are complete. After a failure `resume` continues after the last complete stage.
+// stages are complete. After a failure `resume` continues after the last complete stage. `refine` adds
+// soft splats to the whole scene, unless it has too few photographs or no device can draw it.
 // ORL_ERR_ARGUMENT: OUT exists already without `resume`, or bad settings.
 // ORL_ERR_NOT_FOUND, ORL_ERR_DATA: too few photographs, or too few that register.
 // ORL_ERR_EXTERNAL: COLMAP is missing or failed.

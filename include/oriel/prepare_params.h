@@ -146,9 +146,10 @@ extern const char *const orl_quality_names[], *const orl_matching_names[],
         "is behind") \
     ROW(keep, "keep", CHOICE(orl_keep, ORL_KEEPS, ORL_KEEP_MINIMAL, "WHAT"), \
         "minimal is what commands read; all has the stereo's maps, too") \
+    ROW(refine, "refine", FLAG, "when the scene is made, do what oriel refine does") \
     ROW(max_ram_bytes, "max-ram", MIB(1 << 24), \
         "memory that fusion and points keep to; default: half of what is free") \
-    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory that densify keeps to", \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory that densify and refine keep to", \
         "densify?max_vram") \
     ROW(until, "until", CHOICE(orl_until, ORL_UNTILS, ORL_UNTIL_END, "STAGE"), \
         "stop before features or stereo, which oriel plan divides into jobs", "-") \

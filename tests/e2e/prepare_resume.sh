@@ -281,4 +281,23 @@ says "missing: densify"
     [ $failures = 0 ]
 ) 9>>"$scene/.oriel/lock" || failures=$((failures + 1))
 
+# Soft splats at the end, of a scene that is whole by then. Killed there, it goes on, with the same result.
+run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --refine
+[ -s "$scene/soft.ply" ] || fail "no soft splats"
+grep -q '"tuned"' "$scene/scene.json" || fail "what refine found is not kept"
+soft=$(md5sum <"$scene/soft.ply")
+run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --refine
+says "refine: done already"
+run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --radius-overlap 2
+[ -e "$scene/soft.ply" ] && fail "soft splats of other points stay"
+"$oriel" prepare "$work/p" --out "$scene" --test-list 1 --resume --refine >/dev/null 2>&1 &
+while kill -0 $! 2>/dev/null && ! [ -e "$scene/refine.state" ]; do sleep 0.05; done
+kill -9 $!
+wait $! 2>/dev/null
+run 0 info "$scene"
+run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --refine
+says "radii: done already"
+says "refine: goes on after "
+[ "$(md5sum <"$scene/soft.ply")" = "$soft" ] || fail "a run that was killed makes other soft splats"
+
 finish
