@@ -68,8 +68,8 @@ class Frame {
         this.surface = make(width, height, ["R32F", "RGBA8"]);
         this.supported = make(width, height, ["R32F", "RGBA8"]);
         this.depth = make(width, height, ["R32F"]);
-        this.fillDepth = this.pyramid(make, "RGBA32F");
-        this.fillColor = this.pyramid(make, "RGBA16F");
+        this.fillDepth = this.pyramid(make);
+        this.fillColor = this.pyramid(make);
         this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
         this.painted = make(width, height, ["RGBA16F", "RGBA8"]);
         const w = half(width), h = half(height);
@@ -99,12 +99,13 @@ class Frame {
         return this.softTargets;
     }
 
-    pyramid(make, format)
+    // Of floats: sums of a whole picture exceed what half floats hold.
+    pyramid(make)
     {
         const pulled = [], pushed = [];
         for (let w = half(this.width), h = half(this.height);; w = half(w), h = half(h)) {
-            pulled.push(make(w, h, [format]));
-            pushed.push(make(w, h, [format]));
+            pulled.push(make(w, h, ["RGBA32F"]));
+            pushed.push(make(w, h, ["RGBA32F"]));
             if (w === 1 && h === 1)
                 return {pulled, pushed};
         }
@@ -157,7 +158,7 @@ export class Renderer {
         this.pullPush();
         const pointsOnly = LAYERS[layer] === "points" || this.photos.ready.length === 0;
         this.fillIn(f.fillDepth, this.programs.seedDepth, {...this.values, known: this.supported, normals: this.normals},
-                    f.fillDepth.pulled[0], {factor: 1, far: true});
+                    f.fillDepth.pulled[0], true);
         this.device.pass(this.programs.fillDepth, f.depth,
                          {...this.values, known: this.supported, far: true,
                           filled: f.fillDepth.pushed[0].textures[0]});
@@ -248,16 +249,16 @@ export class Renderer {
     }
 
     // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.
-    // rules: what the shaders are told of what the values mean
-    fillIn(pyramid, seed, values, seeds, rules)
+    // far: as fill_finer.glsl has it
+    fillIn(pyramid, seed, values, seeds, far)
     {
         const {device, programs} = this, {pulled, pushed} = pyramid, top = pulled.length - 1;
         device.pass(seed, seeds, values);
         for (let i = 1; i <= top; i++)
-            device.pass(programs.fillPull, pulled[i], {...rules, fine: pulled[i - 1].textures[0]});
+            device.pass(programs.fillPull, pulled[i], {far, fine: pulled[i - 1].textures[0]});
         let above = pulled[top].textures[0];
         for (let i = top - 1; i >= 0; i--) {
-            device.pass(programs.fillPush, pushed[i], {...rules, fine: pulled[i].textures[0], coarse: above});
+            device.pass(programs.fillPush, pushed[i], {far, fine: pulled[i].textures[0], coarse: above});
             above = pushed[i].textures[0];
         }
         if (top === 0)
@@ -293,7 +294,7 @@ export class Renderer {
         const f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
                         normals: this.normals, points_only: pointsOnly};
-        this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, {factor: 0.25, far: false});
+        this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, false);
         this.device.makeLevels(f.guesses);
         this.device.pass(this.programs.compose, f.composed,
                          {...colors, far: false, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});

@@ -1,7 +1,6 @@
-// Sum of 2x2 finer pixels (Gortler 1996, pull); the mean where a format has a small range.
+// Sum of 2x2 finer pixels (Gortler 1996, pull).
 // far: of depths and their slopes, as in shaders/fill/fill_pull.comp.
 uniform sampler2D fine;
-uniform float factor;
 uniform bool far;
 layout(location = 0) out vec4 coarse;
 
@@ -10,7 +9,7 @@ const float SLOPE_KEPT = 0.8; // for a block of twice the size
 // The value of a finer pixel for the block, whose centre lies `by` finer pixels away.
 vec4 fine_value(ivec2 at, vec2 by)
 {
-    vec4 value = texelFetch(fine, at, 0) * factor;
+    vec4 value = texelFetch(fine, at, 0);
     if (far) {
         value.x += dot(value.yz, by);
         value.yz *= 2.0 * SLOPE_KEPT;
