@@ -1,20 +1,9 @@
-// The depths that are tried where the surface has none. The view is divided into cells of CELL pixels, and each
-// open cell, which has estimated background depth alone, takes one of PLANES: plane 0 is its estimate, the last
-// one is at infinity, and inverse depth falls by equal steps. Their number is part of the program, since
-// software renderers keep arrays of constant indices in registers.
+// The depths that are tried where the surface has none, for the renderer and for the page. The view is divided
+// into cells of CELL pixels, and each open cell, which has estimated background depth alone, takes one of PLANES:
+// plane 0 is its estimate, the last one is at infinity, and inverse depth falls by equal steps. Their number is
+// part of the program, since software renderers keep arrays of constant indices in registers.
 
 const float CLOSED = -1.0; // cost of the planes of a cell that is not open
-
-ivec2 cells_across_down()
-{
-    return (view_size + CELL - 1) / CELL;
-}
-
-// Index of the first of a cell's costs.
-int first_cost(ivec2 cell)
-{
-    return (cell.y * cells_across_down().x + cell.x) * PLANES;
-}
 
 // Inverse depth of a plane as a share of the estimate's.
 float plane_share(float k)

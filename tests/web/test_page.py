@@ -104,7 +104,7 @@ class Page(unittest.TestCase):
             page, own = self.file("page.png"), self.file("own.png")
             self.browser.capture(page, camera)
             run(ORIEL, "render", SCENE, "--at", name, "--out", own, "--quiet")
-            self.assertGreaterEqual(psnr(page, own), 32, name)
+            self.assertGreaterEqual(psnr(page, own), 38, name) # 36 if guesses stay where they are
 
     def test_a_backdrop_rests_as_in_the_renderer(self):
         camera = next(c for c in self.cameras if c["test"])

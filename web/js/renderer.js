@@ -9,12 +9,15 @@ const POINTS_PER_PIXEL = 4; // more are thinned
 const BORDER_PX = 2;      // over which photographs fade out at their borders
 const OWN_PLACE = 0.1;     // of the scene's distance, around a photograph's place
 const LEVELS_MAX = 9;     // of the surfel pyramid
+const CELLS_MIN = 64;      // in which depths are tried, along the longer side of the picture
+const GUESS_FARTHEST = 1000; // of the scene's distance
 const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
 export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
 export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
 const POINTS_LAYER = LAYERS.indexOf("points");
 
-function makePrograms(device, sources, manifest)
+// planes: depths that are tried where the depth is guessed
+function makePrograms(device, sources, manifest, planes)
 {
     const screen = (file, defines) => device.program(sources, "screen.vert", file, defines);
     const late = (file, defines, vertex = "screen.vert") => { // the first picture does without
@@ -22,6 +25,7 @@ function makePrograms(device, sources, manifest)
         return () => made ||= device.program(sources, vertex, file, defines);
     };
     const asks = {TILE, ...(manifest.backdrop === "rests" && {RESTS: 1})};
+    const tries = {TILE, PLANES: planes, TEXELS: costTexels(planes)};
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
@@ -36,14 +40,26 @@ function makePrograms(device, sources, manifest)
         gatherSharp: late("gather.frag", {...asks, BICUBIC: 1, ...(manifest.soft && {SOFT: 1})}),
         soft: late("soft.frag", {}, "soft.vert"), softKeep: late("soft_keep.frag"),
         softCompare: late("soft_compare.frag"), softMix: late("soft_mix.frag"),
+        guessCost: late("guess_cost.frag", tries), guessPick: late("guess_pick.frag", tries),
+        guessApply: late("guess_apply.frag"),
     };
 }
 
 const half = side => (side + 1) >> 1;
+const costTexels = planes => Math.ceil(planes / 4); // of a cell
+
+// Pixels of a cell's side, as src/render/paint/guess.c has it.
+function cellSide(width, height)
+{
+    let side = 2;
+    while (2 * CELLS_MIN * side <= Math.max(width, height))
+        side *= 2;
+    return side;
+}
 
 // Everything that depends on the frame's size.
 class Frame {
-    constructor(device, width, height)
+    constructor(device, width, height, planes)
     {
         this.device = device;
         this.width = width;
@@ -71,6 +87,13 @@ class Frame {
         this.fillDepth = this.pyramid(make);
         this.fillColor = this.pyramid(make);
         this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
+        if (planes > 1) {
+            this.cell = cellSide(width, height);
+            const across = Math.ceil(width / this.cell), down = Math.ceil(height / this.cell);
+            this.costs = make(across * costTexels(planes), down, ["RGBA32F"]);
+            this.picked = make(across, down, ["R32F"]);
+            this.moved = make(width, height, ["R32F"]);
+        }
         this.painted = make(width, height, ["RGBA16F", "RGBA8"]);
         const w = half(width), h = half(height);
         this.guesses = this.withLevels("RGBA16F", w, h);
@@ -124,7 +147,8 @@ export class Renderer {
         this.device = device;
         this.manifest = manifest;
         this.clouds = [cloud]; // and what moves, where something does
-        this.programs = makePrograms(device, sources, manifest);
+        this.planes = manifest.radiance ? 0 : Math.round(manifest.options.guess_depths);
+        this.programs = makePrograms(device, sources, manifest, this.planes);
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
                                      manifest.radiance);
         this.soft = null; // splats, once they are loaded
@@ -141,7 +165,7 @@ export class Renderer {
             return;
         if (this.frame)
             this.frame.release();
-        this.frame = new Frame(this.device, width, height);
+        this.frame = new Frame(this.device, width, height, this.planes);
     }
 
     // Everything but showing it. `layer`: one of LAYERS; whole: as show() has it
@@ -152,7 +176,7 @@ export class Renderer {
         this.camera = camera;
         this.values = {view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
                        front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
-                       near: this.manifest.near || 0,
+                       near: this.manifest.near || 0, min_inverse: 1 / (GUESS_FARTHEST * this.manifest.distance),
                        ground: this.groundAlongRays(camera)};
         this.splat(camera, o);
         this.pullPush();
@@ -285,8 +309,24 @@ export class Renderer {
         for (const [key, value] of Object.entries(o))
             values[`opt.${key}`] = value;
         this.device.pass(this.programs.choose, f.tiles, values);
+        if (whole && this.planes > 1)
+            this.moveGuesses(values);
         this.device.pass(whole ? this.programs.gatherSharp() : this.programs.gather, f.painted, values);
         return photos;
+    }
+
+    // Moves guesses to where photographs do not see past them, as src/render/paint/guess.c does, and lists the
+    // photographs of the tiles again. values: of the gather, which then have the depth that is moved
+    moveGuesses(values)
+    {
+        const {device, programs, frame: f} = this;
+        values.CELL = f.cell;
+        device.pass(programs.guessCost(), f.costs, values);
+        device.pass(programs.guessPick(), f.picked, {costs: f.costs.textures[0]});
+        device.pass(programs.guessApply(), f.moved, {...values, picked: f.picked.textures[0]});
+        this.depth = f.moved;
+        values.view_depth = f.moved.textures[0];
+        device.pass(programs.choose, f.tiles, values);
     }
 
     compose(pointsOnly)

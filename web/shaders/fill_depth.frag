@@ -3,11 +3,9 @@
 #include "fill_finer.glsl"
 uniform sampler2D known, filled;
 uniform vec4 view_focal;
-uniform float typical; // depth
+uniform float min_inverse; // of the farthest guess
 uniform vec4 ground; // dot(xyz, ray) is its inverse depth; w: the least that counts
 layout(location = 0) out float depth;
-
-const float FARTHEST = 1000.0; // ORL_GUESS_FARTHEST of shaders/shared/render_blocks.h
 
 void main()
 {
@@ -17,7 +15,7 @@ void main()
     if (depth > 0.0 || !(finer.a > 0.0))
         return;
     // Surfaces that recede would continue beyond infinity.
-    float inverse = max(finer.r / finer.a, 1.0 / (FARTHEST * typical));
+    float inverse = max(finer.r / finer.a, min_inverse);
     float on_ground = dot(ground.xyz, vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0));
     depth = -1.0 / max(inverse, on_ground > ground.w ? on_ground : 0.0);
 }
