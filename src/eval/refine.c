@@ -27,7 +27,7 @@ static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
 static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f, 1};
 static const size_t MIX_SHARES = 5; // so many of them are tried for opt.soft_mix
 static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
-static const double PIXELS_OF_SPLAT = 6; // of photographs, at least: twice as many splats make pictures no better
+static const double PIXELS_OF_SPLAT = 24; // of photographs, at least: four times as many splats fit them better and others worse
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 // Entries in the lists of a view's tiles that device memory is planned for: so many for a splat and for a pixel.
