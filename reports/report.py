@@ -12,6 +12,7 @@ import sys
 
 FIGURES = ["psnr_db", "psnr_cc_db", "psnr_covered_db", "ssim", "flip", "crumbs", "coverage",
            "completeness"]
+MORE_METHODS = {"paired", "refined"}  # among methods: others made of them
 
 for module in ("matplotlib", "numpy", "PIL"):
     if not importlib.util.find_spec(module):
@@ -69,7 +70,7 @@ class Report:
 
     def methods(self):
         """Name and options of each method that is asked for, with its values of them."""
-        names = [name for name in self.list_of("method") if name != "paired"] or [
+        names = [name for name in self.list_of("method") if name not in MORE_METHODS] or [
             line.split()[0] for line in self.needs("methods").splitlines()
             if line[:1].islower() and "  " in line]
         found = {}

@@ -22,6 +22,7 @@ PHOTOS_LEFT, PHOTOS_FOR_A_VIEW = 3, 2
 STEPS_APART = 8  # of the cameras that are most out of step
 LOSSES_DB = [1, 3, 6]
 ON_ORIEL = "+oriel"  # after a method's name: its weights on the proxy and the guesses of oriel
+REFINED = "oriel+soft"  # oriel, once oriel refine has made soft splats of the case
 BARS_DISTANCE_M, FOCAL = 9.8, 28 / 35  # of the monument's bars; focal length of the larger side
 
 
@@ -730,7 +731,13 @@ def measure_severity(run, source, name, level, methods):
     cases, rows = source.change(name, level), {}
     if cases is None:
         return {}
-    groups, paired = {}, [] if AXES[name].on_hull else [n for n in run.list_of("method") if n == "paired"]
+    groups, more = {}, [] if AXES[name].on_hull else report.MORE_METHODS.intersection(run.list_of("method"))
+    paired = ["paired"] if "paired" in more else []
+
+    def take(method, case, row):
+        row["mean"] = figures_of(case, row)
+        rows.setdefault(method, []).append(row)
+
     for method, values in methods.items():
         if not (AXES[name].on_hull and values["paint"] == "points"):
             groups.setdefault(settings_of(AXES[name], values), []).append(method)
@@ -746,8 +753,10 @@ def measure_severity(run, source, name, level, methods):
             for found in drawn if drawn is not None else [
                     row for method in group
                     for row in run.measure(scene, [method] + paired, how, truth, walk) or []]:
-                found["mean"] = figures_of(case, found)
-                rows.setdefault(found["method"] + (ON_ORIEL if found.get("setting") else ""), []).append(found)
+                take(found["method"] + (ON_ORIEL if found.get("setting") else ""), case, found)
+        if "refined" in more and run.call("refine", scene, quiet=True) is not None:
+            for found in run.measure(scene, ["oriel"], [], truth, walk) or []:
+                take(REFINED, case, found)
     return {method: {"device": found[0]["device"], "flicker": mean([f["flicker"] for f in found]),
                      "mean": {key: mean([f["mean"][key] for f in found]) for key in FIGURES}}
             for method, found in rows.items() if len(found) == len(cases)}
@@ -832,7 +841,7 @@ def make(run):
         raise Failure(f"no axis that is asked for suits {source.name}")
     kept = {key: run.options.get(key) for key in ("quick", "size", "photographs", "views", "seed")}
     kept["scene"] = "synth" if source.synth else report.state_of(source.scene)
-    kept["methods"], kept["paired"] = methods, "paired" in run.list_of("method")
+    kept["methods"], kept["more"] = methods, sorted(report.MORE_METHODS.intersection(run.list_of("method")))
     axes, rows = [], []
     run.out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:

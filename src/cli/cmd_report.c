@@ -31,8 +31,8 @@ COMMAND_OPTIONS(chart_options, CHART_OPTIONS)
     ROW(out, "out", NEEDED("DIR"), \
         "the report: stress.html, stress.json, figures; rows in it are used again") \
     ROW(axes, "axes", LIST("NAME,.."), "what gets worse; default: all that the scene serves") \
-    ROW(methods, "method", LIST("NAME"), "methods, or with paired also those of papers again on the proxy of oriel; " \
-        "default: all") \
+    ROW(methods, "method", LIST("NAME"), "methods, or with paired also those of papers again on the proxy of oriel, " \
+        "with refined also oriel with soft splats; default: all") \
     ROW(quick, "quick", FLAG, "an overview: one view, three of the six severities") \
     ROW(side, "size", INT(192, 96, 2048, "PX"), "longer side of photographs and pictures") \
     ROW(photographs, "photographs", INT(16, 4, 500, "N"), "of the synthetic monument") \
@@ -85,13 +85,19 @@ static enum orl_result become(const struct orl_log *log, const char *script, con
     return orl_fail(log, ORL_ERR_EXTERNAL, "python3 is missing, which makes this report");
 }
 
+// What else may stand among the methods of a report.
+static bool is_more(const struct call *call, const char *name)
+{
+    return strcmp(name, "paired") == 0 || (strcmp(name, "refined") == 0 && call->command == &command_stress);
+}
+
 // ORL_ERR_ARGUMENT, logged: a report of methods is asked for one that there is not.
 static enum orl_result check_methods(const struct call *call)
 {
     for (const struct orl_option *row = call->command->rows(); row->name; row++) {
         const struct orl_names *names = (const void *)((const char *)call->options + row->offset);
         for (size_t i = 0; strcmp(row->name, "method") == 0 && i < names->count; i++)
-            if (strcmp(names->items[i], "paired") != 0 && !orl_method_find(call->log, names->items[i]))
+            if (!is_more(call, names->items[i]) && !orl_method_find(call->log, names->items[i]))
                 return ORL_ERR_ARGUMENT;
     }
     return ORL_OK;

@@ -45,6 +45,12 @@ grep -q '^3 rows measured' stdout.txt || fail "rows of another seed were used"
 in_two_parts stress "$oriel" stress synth --out parts "${one[@]}" "${small[@]}"
 grep -q '^0 rows measured, 3 used again' stdout.txt || fail "rows of the parts were not used"
 
+# Each severity has soft splats of its own, which gain where photographs are many.
+runs 0 "$oriel" stress synth --out refined --axes points --method oriel,refined --quick --size 96 --photographs 12 --quiet
+echo "$(db points oriel) $(db points oriel+soft)" | awk '!($3 > $1 + 0.2 && $4 > $2 - 0.2) { exit 1 }' || fail "soft splats gain nothing"
+runs 2 "$oriel" chart refined --out chart --method refined
+grep -q 'method refined is not known' stderr.txt || fail "a chart of what it cannot refine"
+
 # The figure's silhouettes carve a hull, on which no method shows the points' own colours.
 runs 0 "$oriel" stress synth --out hull --axes silhouettes,hull-cameras,unsynchronised,backgrounds --method ulr,points "${small[@]}"
 for axis in silhouettes hull-cameras unsynchronised backgrounds; do
