@@ -140,6 +140,8 @@ class Page(unittest.TestCase):
         with open(f"{scene}/scene.json", "w") as file:
             json.dump(content, file)
         run(ORIEL, "publish", scene, "--out", site, "--quiet")
+        shutil.copytree(f"{SITE}/js", f"{site}/js", dirs_exist_ok=True) # the page that is tested
+        shutil.copy(f"{SITE}/shaders.json", site)
         soft, own = self.file("soft.png"), self.file("own-soft.png")
         try:
             self.reopen(self.address.replace(self.path, os.path.relpath(site, os.path.dirname(os.path.dirname(SITE)))))
