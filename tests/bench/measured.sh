@@ -342,6 +342,17 @@ the processor time of a frame as a share of that with the rule. [Options](../ref
 END
     command_block "tests/bench/worth.sh oriel SCENES/..."
     run "$command"
+    cat <<'END'
+
+## Soft splats
+
+Held-out photographs at half of the scenes' size, PSNR in dB and crumbs per 10,000 pixels: by the points, by `oriel` without
+[soft splats](../how/oriel.md#soft-splats), with the shares `soft` and `soft_mix` that `refine` finds, and by the splats alone. MiB: of
+the splats' file. Seconds are of the processor; `prepare` is at the scenes' own size, at which `refine` takes up to four times
+as long. Frame: its processor time as a share of that without splats.
+END
+    command_block "tests/bench/soft.sh oriel 2 SCENES/..."
+    run "tests/bench/soft.sh $build/oriel 2 ${part_scenes[*]/#/SCENES/}"
 }
 
 # The matrix of a report of oriel stress: dB lost at worst, and where 3 dB are lost.

@@ -4,9 +4,10 @@
 #     tests/bench/soft.sh ORIEL DIVIDE SCENE...
 # Everything is at 1/DIVIDE of the photographs' size. Each scene is refined in a copy, so it need not be refined
 # and stays as it is. Prints a table in Markdown: PSNR in dB and crumbs of each picture, how much memory the splats
-# take, what refine and a frame cost. Needs jq.
+# take, seconds of the processor for refine and, at the scene's own size, for prepare, and a frame's time as a share of
+# that without splats. Needs jq.
 set -euo pipefail
-[ $# -ge 3 ] || { sed -n '2,8s/^# *//p' "$0"; exit 2; }
+[ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; exit 2; }
 oriel=$1 divide=$2
 shift 2
 work=$(mktemp -d)
@@ -31,14 +32,15 @@ for scene in "$@"; do
         --argjson bytes "$(stat -c %s "$work/scene/soft.ply")" --slurpfile manifest "$work/scene/scene.json" \
         --argjson points "$(picture points)" --argjson oriel "$(picture oriel soft=0)" --argjson found "$(picture oriel)" \
         --argjson alone "$(picture oriel soft=1 soft_mix=1)" '$manifest[0] as $m | ($m.tuned.oriel.settings // {}) as $s
-        | {$name, $seconds, $bytes, $points, $oriel, $found, $alone, soft: ($s.soft // 0), mix: ($s.soft_mix // 0),
+        | {$name, $seconds, $bytes, $points, $oriel, $found, $alone,
+           prepare: ([$m.stages[].cpu_s // 0] | add), soft: ($s.soft // 0), mix: ($s.soft_mix // 0),
            photographs: ([$m.photographs[] | select(.split != "test")] | length)}'
 done | jq -rs '
   def at(d): pow(10; d) as $p | (. * $p | round) / $p | tostring;
   def both: (.[0] | at(2)) + ", " + (.[1] | at(1));
-  ["scene", "photographs", "points", "oriel", "shares", "with them", "splats alone", "MiB", "refine, s", "frame"] as $columns
+  ["scene", "photographs", "points", "oriel", "shares", "with them", "splats alone", "MiB", "refine, s", "prepare, s", "frame"] as $columns
   | ($columns, ($columns | map("---")),
      (.[] | [.name, (.photographs | tostring), (.points | both), (.oriel | both), "\(.soft | at(2)), \(.mix | at(2))",
              (.found | both), (.alone | both), (.bytes / 1048576 | at(1)), (.seconds | at(0)),
-             (.found[2] / .oriel[2] | at(1))]))
+             (.prepare | at(0)), (.found[2] / .oriel[2] | at(1))]))
   | "| " + join(" | ") + " |"'
