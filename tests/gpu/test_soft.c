@@ -317,45 +317,76 @@ static double encoded(double linear)
     return 1.055 * pow(linear, 1 / 2.4) - 0.055;
 }
 
-// A picture takes the fine part of what the splats show other than in its photographs, by its share, in sRGB; not the
-// coarse part, and nothing where there is no photograph, or no splat. Light above white stays.
+// How far a pixel of luma `from` goes towards splats of luma 0.5 that correct it by `more`.
+static double way_of(double from, double more)
+{
+    const double gap = 0.5 - from, sure = 0.04;
+    return fmin(fmax(more * gap / (gap * gap + sure * sure), 0), 1);
+}
+
+static void set_pixels(float picture[SIDE * SIDE][4], float value)
+{
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 4; c++)
+            picture[i][c] = c == 3 ? 0.25f : value;
+}
+
+// A picture moves towards the splats by the fine part of what they show other than in its photographs, by its share, in
+// luma of sRGB; not by the coarse part, not past them or away from them, and not where there is no photograph, or no
+// splat. Light above white stays.
 static void test_mix(void **state)
 {
     (void)state;
     float gathered[SIDE * SIDE], picture[SIDE * SIDE][4];
-    for (size_t i = 0; i < SIDE * SIDE; i++) {
+    for (size_t i = 0; i < SIDE * SIDE; i++)
         gathered[i] = 0.25f;
-        for (int c = 0; c < 4; c++)
-            picture[i][c] = c == 2 ? 3 : 0.25f;
-    }
+    set_pixels(picture, 0.05f);
     mix(gathered, SIDE * SIDE, 0, 1.5f, picture);
     for (size_t i = 0; i < SIDE * SIDE; i++)
         for (int c = 0; c < 4; c++)
-            assert_float_equal(picture[i][c], c == 2 ? 3 : 0.25, 2e-3);
+            assert_float_equal(picture[i][c], c == 3 ? 0.25 : 0.05, 1e-3);
 
     for (size_t i = 0; i < SIDE * SIDE; i++)
         gathered[i] = i == MIDDLE ? 0.25f : i == 4 * SIDE + 4 ? -1 : 0.5f;
     mix(gathered, 4 * SIDE + 24, 0, 1.5f, picture);
     for (size_t i = 0; i < SIDE * SIDE; i++)
         if (i / SIDE < 8 || i / SIDE > 24) // far from the pixel that differs
-            assert_float_equal(picture[i][0], 0.25, 2e-3);
-    double more = encoded((double)picture[MIDDLE][0]) - encoded(0.25); // the coarse part takes 0.03 at most
-    assert_true(more > 0.5 * 0.22 && more < 0.5 * 0.25);
+            assert_float_equal(picture[i][0], 0.05, 1e-3);
+    const double from = encoded(0.05), to = encoded((double)picture[MIDDLE][0]);
+    // The coarse part takes 0.03 of the difference at most.
+    assert_true(to > from + way_of(from, 0.5 * 0.22) * (0.5 - from));
+    assert_true(to < from + way_of(from, 0.5 * 0.25) * (0.5 - from));
     assert_float_equal(picture[MIDDLE][1], picture[MIDDLE][0], 1e-3);
-    assert_true(picture[MIDDLE][2] > 2.9f && picture[MIDDLE][3] == 0.25f);
+    assert_float_equal(picture[MIDDLE][3], 0.25, 1e-6);
 
     // Where the coarse part is wider than the view, it is the view's mean.
-    double start = encoded((double)picture[MIDDLE][0]);
+    set_pixels(picture, 0.05f);
     mix(gathered, 4 * SIDE + 24, 0, 20, picture);
-    assert_float_equal(encoded((double)picture[MIDDLE][0]) - start, 0.125, 2e-3);
+    assert_float_equal(encoded((double)picture[MIDDLE][0]), from + way_of(from, 0.125) * (0.5 - from), 3e-3);
+
+    // Nearer to the splats than the difference is, a pixel goes to them and no farther; beyond them, it stays.
+    set_pixels(picture, 0.15f); // 0.42 in sRGB
+    mix(gathered, SIDE * SIDE, 0, 20, picture);
+    assert_in_range((int)(1000 * encoded((double)picture[MIDDLE][0])), 495, 502);
+    set_pixels(picture, 0.3f);
+    mix(gathered, SIDE * SIDE, 0, 20, picture);
+    assert_float_equal(picture[MIDDLE][0], 0.3, 1e-3);
+
+    // Chroma goes the same way as luma, and what is above white stays.
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        picture[i][0] = 3, picture[i][1] = picture[i][2] = 0;
+    mix(gathered, SIDE * SIDE, 0, 20, picture);
+    const double red = way_of(0.299, 0.125);
+    assert_float_equal(encoded((double)picture[MIDDLE][0] - 2), 1 - 0.5 * red, 5e-3);
+    assert_float_equal(encoded((double)picture[MIDDLE][2]), 0.5 * red, 5e-3);
 
     // What splats cover is mixed, and what they leave open stays.
     for (size_t i = 0; i < SIDE * SIDE; i++)
         gathered[i] = 0.5f;
-    const float before = picture[0][0];
+    set_pixels(picture, 0.05f);
     mix(gathered, 0, 0.5f, 1.5f, picture);
-    assert_float_equal(picture[0][0], before, 1e-3);
-    assert_float_equal(encoded((double)picture[1][0]), (encoded(0.25) + 0.5) / 2, 2e-3);
+    assert_float_equal(picture[0][0], 0.05, 1e-3);
+    assert_float_equal(encoded((double)picture[1][0]), (from + 0.5) / 2, 2e-3);
 }
 
 static int setup(void **state)
