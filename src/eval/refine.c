@@ -11,6 +11,7 @@
 #include "eval/refine_state.h"
 #include "eval/score.h"
 #include "io/picture.h"
+#include "scene/depth_buffer.h"
 #include "scene/manifest.h"
 #include "scene/meter.h"
 #include "scene/tuned_settings.h"
@@ -23,11 +24,13 @@ enum { GRID = 4, FAR_VIEWS = 3 };
 // One of CHECKED photographs, at least CHECKS_MIN of them, or one of two, and at most CHECKS_MAX, waits for the last
 // third of the steps, so that the shares of the splats can be found on what they have not seen.
 enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
+enum { STEPS_OF_PHOTO = 30, STEPS_MAX = 2000 }; // unless they are asked for
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
-static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.65f, 0.8f, 1};
-static const size_t MIX_SHARES = 5; // so many of them are tried for opt.soft_mix
+static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.5f, 0.75f, 1};
+static const size_t MIX_SHARES = 3; // so many of them are tried for opt.soft_mix
 static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
-static const double PIXELS_OF_SPLAT = 24; // of photographs, at least: four times as many splats fit them better and others worse
+static const double PIXELS_OF_SPLAT = 2; // in a photograph, whatever hides it: four times as many splats fit photographs better and others worse
+enum { PLACES_TRIED = 1000 };            // so many tell in how many photographs a place is
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 // Entries in the lists of a view's tiles that device memory is planned for: so many for a splat and for a pixel.
@@ -41,6 +44,7 @@ struct refine {
     const struct orl_refine_params *params;
     struct orl_soft_photo *photos; // owned: those that are not checks first
     size_t count, checks;
+    double steps; // for each photograph
     struct orl_soft_model model;   // owned
     struct orl_refine_state state;
     char *state_path;              // owned
@@ -248,23 +252,6 @@ static enum orl_result keep_shares(const struct refine *r, struct orl_refine_rep
 
 // --- the whole ---
 
-// Without points, splats begin on the scene's mesh.
-static enum orl_result begin(struct refine *r, double most)
-{
-    const struct orl_points *points = &r->scene->points;
-    if (points->count > 0)
-        return orl_soft_from_points(r->log, points, fmax(1, (double)points->count / most), r->params->seed, &r->model);
-    struct orl_mesh mesh = {0};
-    char *path = orl_scene_mesh_path(r->log, r->scene);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && orl_path_is_file(path))
-        result = orl_mesh_read(r->log, path, &mesh);
-    ORL_THEN(result, orl_soft_from_mesh(r->log, &mesh, most, r->params->seed, &r->model));
-    orl_mesh_finish(&mesh);
-    free(path);
-    return result;
-}
-
 // Device memory for so many splats of points and the far ones that there may be, in a view of this size.
 static double memory_need(double splats, int width, int height)
 {
@@ -291,12 +278,24 @@ static enum orl_result fit_memory(const struct refine *r, int width, int height,
     return ORL_OK;
 }
 
-// Begins, or goes on where an earlier run was cut off.
-static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
+// In how many photographs a place is, whatever hides it: the mean of some of the places.
+static double mean_views(const struct refine *r, const float (*places)[3], size_t count)
 {
-    const struct orl_refine_params *p = r->params;
-    struct orl_refine_report *report = &r->state.report;
-    double pixels = 0, splats = p->splats;
+    double views = 0, tried = 0;
+    for (size_t i = 0; i < count; i += count / PLACES_TRIED + 1, tried++)
+        for (size_t k = 0; k < r->count; k++) {
+            double pixel[2], depth;
+            views += orl_point_project(&r->photos[k].view, places[i], pixel, &depth);
+        }
+    return fmax(views / fmax(tried, 1), 1);
+}
+
+// Splats on the scene's points or, without any, on its mesh.
+static enum orl_result begin(struct refine *r, const struct orl_mesh *mesh)
+{
+    const struct orl_points *points = &r->scene->points;
+    const bool on_points = points->count > 0;
+    double pixels = 0, splats = r->params->splats;
     int width = 0, height = 0;
     for (size_t i = 0; i < r->count; i++) {
         const struct orl_image *color = &r->photos[i].color;
@@ -304,16 +303,40 @@ static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
         width = color->width > width ? color->width : width;
         height = color->height > height ? color->height : height;
     }
+    pixels /= on_points ? mean_views(r, (const float(*)[3])points->position, points->count)
+                        : mean_views(r, (const float(*)[3])mesh->position, mesh->vertex_count);
     splats = fmin(splats, pixels / PIXELS_OF_SPLAT);
-    if (r->scene->points.count > 0)
-        splats = fmin(splats, (double)r->scene->points.count);
+    if (on_points)
+        splats = fmin(splats, (double)points->count);
     ORL_TRY(fit_memory(r, width, height, &splats));
-    ORL_TRY(begin(r, splats));
+    return on_points ? orl_soft_from_points(r->log, points, (double)points->count / splats, r->params->seed, &r->model)
+                     : orl_soft_from_mesh(r->log, mesh, splats, r->params->seed, &r->model);
+}
+
+static enum orl_result begin_somewhere(struct refine *r)
+{
+    struct orl_mesh mesh = {0};
+    char *path = orl_scene_mesh_path(r->log, r->scene);
+    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    if (path && r->scene->points.count == 0 && orl_path_is_file(path))
+        result = orl_mesh_read(r->log, path, &mesh);
+    ORL_THEN(result, begin(r, &mesh));
+    orl_mesh_finish(&mesh);
+    free(path);
+    return result;
+}
+
+// Begins, or goes on where an earlier run was cut off.
+static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
+{
+    const struct orl_refine_params *p = r->params;
+    struct orl_refine_report *report = &r->state.report;
+    ORL_TRY(begin_somewhere(r));
     if (r->model.count == 0)
         return orl_fail(r->log, ORL_ERR_DATA, "the scene has neither points nor a mesh to make splats of");
     report->points = r->model.count;
     add_key(r, r->model.splats, r->model.count * sizeof *r->model.splats);
-    const double settings[] = {p->steps, p->budget_s, p->seed, (double)p->max_vram_bytes};
+    const double settings[] = {r->steps, p->budget_s, p->seed, (double)p->max_vram_bytes};
     add_key(r, settings, sizeof settings);
     ORL_TRY(orl_refine_state_read(r->log, r->state_path, &r->state, &r->model));
     if (r->state.splats > 0) {
@@ -339,7 +362,7 @@ static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, size_t pho
 {
     struct orl_soft_descent_report *at = &r->state.at;
     struct orl_soft_descent_params params = {
-        .steps = (int)ceil(part * r->params->steps * (double)photographs), .first_size = first_size,
+        .steps = (int)ceil(part * r->steps * (double)photographs), .first_size = first_size,
         .seed = r->params->seed, .budget_s = part * r->params->budget_s, .max_bytes = r->params->max_vram_bytes,
         .progress = r->params->progress};
     while (!at->done) {
@@ -367,6 +390,7 @@ static enum orl_result run(struct refine *r, struct orl_gpu *gpu)
     ORL_TRY_MEMORY(r->state_path);
     ORL_TRY(orl_validation_check(r->log, r->scene, &train));
     r->checks = (size_t)fmin(fmin(fmax((double)(train / CHECKED), CHECKS_MIN), (double)(train / 2)), CHECKS_MAX);
+    r->steps = r->params->steps ? r->params->steps : fmin(STEPS_OF_PHOTO, (double)STEPS_MAX / (double)train);
     if (!(r->photos = orl_array(r->log, train, sizeof *r->photos)))
         return ORL_ERR_MEMORY;
     ORL_TRY(read_photos(r, false));
