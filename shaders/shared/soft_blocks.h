@@ -6,9 +6,9 @@
 
 // Vectors of four that describe a splat: position (world), logit of the opacity; logarithms of the standard
 // deviations along its axes, size of a training photograph's pixel where the splat was first seen (0: never);
-// its rotation, a quaternion wxyz of any length; and twelve coefficients of spherical harmonics of sRGB
-// colour less a half, by coefficient, then by channel.
-#define ORL_SOFT_VEC4S 6
+// its rotation, a quaternion wxyz of any length; and its sRGB colour less a half, as the
+// coefficient of the constant spherical harmonic, 0.
+#define ORL_SOFT_VEC4S 4
 // Vectors of four that describe a projected splat: centre (pixels), first two entries of the inverse
 // covariance; its last one, opacity, depth, 0; colour, 1 for each channel that is above 0 as bits.
 #define ORL_SOFT_SEEN_VEC4S 3

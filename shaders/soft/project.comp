@@ -14,7 +14,7 @@ void main()
         return;
     bounds[ORL_SOFT_BOUND_WORDS * i] = 0u;
     splat s = splat_at(i);
-    vec3 from_eye = s.position - eye.xyz, p = view_rotation() * from_eye;
+    vec3 p = view_rotation() * (s.position - eye.xyz);
     seen_splat seen;
     vec2 reach;
     if (!splat_seen(s, p, vec2(view_size), smooths > 0.0 ? splat_row(i, 1).w * focal.x / p.z : 1.0, seen, reach))
@@ -22,8 +22,7 @@ void main()
     ivec2 last = (view_size - 1) / ORL_SOFT_TILE;
     uvec2 from = uvec2(clamp(ivec2((seen.centre - reach) / float(ORL_SOFT_TILE)), ivec2(0), last));
     uvec2 to = uvec2(clamp(ivec2((seen.centre + reach) / float(ORL_SOFT_TILE)), ivec2(0), last));
-    vec3 color = splat_color(splat_harmonic(i, 0), splat_harmonic(i, 1), splat_harmonic(i, 2), splat_harmonic(i, 3),
-                             normalize(from_eye));
+    vec3 color = splat_color(splat_row(i, 3).rgb);
     int above = (color.r > 0.0 ? 1 : 0) + (color.g > 0.0 ? 2 : 0) + (color.b > 0.0 ? 4 : 0);
     imageStore(projected, ORL_SOFT_SEEN_VEC4S * i, vec4(seen.centre, seen.inverse.xy));
     imageStore(projected, ORL_SOFT_SEEN_VEC4S * i + 1, vec4(seen.inverse.z, seen.opacity, p.z, 0.0));

@@ -4,8 +4,7 @@
 
 #include "soft/opacity.glsl"
 
-// Spherical harmonics of degrees 0 and 1.
-const float HARMONIC_0 = 0.28209479, HARMONIC_1 = 0.48860251;
+const float HARMONIC_0 = 0.28209479; // the constant spherical harmonic, as in files of Gaussian splatting
 // Variance that every splat's projection gains, pixels^2, so that none is narrower than a pixel (Kerbl 2023).
 const float LOW_PASS = 0.3;
 const float NEAR = 1e-3;   // of the scene's units: nothing nearer is drawn
@@ -42,10 +41,10 @@ mat2x3 splat_footprint(splat s, vec3 p)
     return mat2x3(s.sigma * (to_axes * (to_world * jacobian[0])), s.sigma * (to_axes * (to_world * jacobian[1])));
 }
 
-// The colour seen along d, of unit length, from four coefficients; sRGB.
-vec3 splat_color(vec3 h0, vec3 h1, vec3 h2, vec3 h3, vec3 d)
+// sRGB.
+vec3 splat_color(vec3 harmonic)
 {
-    return 0.5 + HARMONIC_0 * h0 + HARMONIC_1 * (-d.y * h1 + d.z * h2 - d.x * h3);
+    return 0.5 + HARMONIC_0 * harmonic;
 }
 
 // Shows a splat, without its colour, in a view of this size. p: its place in the camera frame; pixel: the size of a

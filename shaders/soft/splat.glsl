@@ -23,10 +23,3 @@ splat splat_at(int i)
     float size = max(length(q), 1e-12);
     return splat(a.xyz, exp(b.xyz), 1.0 / (1.0 + exp(-a.w)), q / size, size);
 }
-
-// Coefficient k of the colour, of 4.
-vec3 splat_harmonic(int i, int k)
-{
-    vec4 a = splat_row(i, 3), b = splat_row(i, 4), c = splat_row(i, 5);
-    return k == 0 ? a.rgb : k == 1 ? vec3(a.a, b.rg) : k == 2 ? vec3(b.ba, c.r) : c.gba;
-}

@@ -19,8 +19,7 @@ layout(rgba32f, binding = 4) uniform imageBuffer square;
 const float FORGET_1 = 0.9, FORGET_2 = 0.99;
 // Step sizes. Places move by parts of the size that a photograph's pixel has there; sizes stay between
 // SIGMA_MIN and SIGMA_MAX of it.
-const float STEP_PLACE = 0.03, STEP_SIGMA = 0.01, STEP_TURN = 0.004, STEP_OPACITY = 0.05, STEP_COLOR = 0.01,
-            STEP_GLOSS = 0.003;
+const float STEP_PLACE = 0.03, STEP_SIGMA = 0.01, STEP_TURN = 0.004, STEP_OPACITY = 0.05, STEP_COLOR = 0.02;
 const float SIGMA_MIN = 0.05, SIGMA_MAX = 30.0;
 
 void main()
@@ -41,17 +40,8 @@ void main()
     int above = int(imageLoad(projected, ORL_SOFT_SEEN_VEC4S * i + 2).a);
     float a = seen_a.z, b = seen_a.w, c = seen_b.x, opacity = seen_b.y, z = seen_b.z;
     splat s = splat_at(i);
-    vec3 from_eye = s.position - eye.xyz, p = view_rotation() * from_eye;
-
-    // Colour, which changes with the direction.
-    vec3 by_color = color_sum * vec3(above & 1, above >> 1 & 1, above >> 2 & 1);
-    float distance_here = length(from_eye);
-    vec3 d = from_eye / distance_here;
-    vec3 by_direction = HARMONIC_1 * vec3(-dot(by_color, splat_harmonic(i, 3)), -dot(by_color, splat_harmonic(i, 1)),
-                                          dot(by_color, splat_harmonic(i, 2)));
-    vec3 by_place = (by_direction - dot(by_direction, d) * d) / distance_here;
-    vec3 by_harmonic[4] = vec3[4](HARMONIC_0 * by_color, -HARMONIC_1 * d.y * by_color, HARMONIC_1 * d.z * by_color,
-                                  -HARMONIC_1 * d.x * by_color);
+    vec3 p = view_rotation() * (s.position - eye.xyz);
+    vec3 by_harmonic = HARMONIC_0 * color_sum * vec3(above & 1, above >> 1 & 1, above >> 2 & 1);
 
     // Exponent -0.5 (a x^2 + c y^2) - b x y, of the offset (x, y) from the centre.
     vec2 by_centre = vec2(a * first.y + b * first.z, b * first.y + c * first.z);
@@ -86,17 +76,16 @@ void main()
     vec3 by_camera = vec3(f * by_centre / z - vec2(by_j0.z, by_j1.z) * f / (z * z),
                           -dot(f * by_centre, p.xy) / (z * z) - (by_j0.x * f.x + by_j1.y * f.y) / (z * z) +
                               2.0 * (by_j0.z * f.x * p.x + by_j1.z * f.y * p.y) / (z * z * z));
-    by_place += to_world * by_camera;
+    vec3 by_place = to_world * by_camera;
 
     vec4 own[ORL_SOFT_VEC4S] = vec4[ORL_SOFT_VEC4S](
-        vec4(by_place, first.x * (1.0 - opacity)), vec4(by_sigma, 0.0), by_turn, vec4(by_harmonic[0], by_harmonic[1].r),
-        vec4(by_harmonic[1].gb, by_harmonic[2].rg), vec4(by_harmonic[2].b, by_harmonic[3]));
+        vec4(by_place, first.x * (1.0 - opacity)), vec4(by_sigma, 0.0), by_turn, vec4(by_harmonic, 0.0));
     int at = ORL_SOFT_VEC4S * i;
     float steps = imageLoad(mean, at + 1).w + 1.0, pixel = splat_row(i, 1).w;
     pixel = pixel > 0.0 ? pixel : z / focal.x;
     vec4 size[ORL_SOFT_VEC4S] = vec4[ORL_SOFT_VEC4S](
         vec4(vec3(STEP_PLACE * pixel), STEP_OPACITY), vec4(vec3(STEP_SIGMA), 0.0), vec4(STEP_TURN),
-        vec4(vec3(STEP_COLOR), STEP_GLOSS), vec4(STEP_GLOSS), vec4(STEP_GLOSS));
+        vec4(STEP_COLOR));
     float grown_1 = 1.0 / (1.0 - pow(FORGET_1, steps)), grown_2 = 1.0 / (1.0 - pow(FORGET_2, steps));
     for (int k = 0; k < ORL_SOFT_VEC4S; k++) {
         vec4 one = FORGET_1 * imageLoad(mean, at + k) + (1.0 - FORGET_1) * own[k];

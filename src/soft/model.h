@@ -1,6 +1,5 @@
-// Soft splats: ellipsoids whose opacity falls as a Gaussian and whose colour changes with the direction
-// (Kerbl 2023, 3D Gaussian splatting). They are adjusted by descent on the photographs (descent.h) and
-// drawn by soft_raster.h.
+// Soft splats: ellipsoids whose opacity falls as a Gaussian (Kerbl 2023, 3D Gaussian splatting), each of one colour from
+// all sides. They are adjusted by descent on the photographs (descent.h) and drawn by soft_raster.h.
 #ifndef ORL_SOFT_MODEL_H
 #define ORL_SOFT_MODEL_H
 

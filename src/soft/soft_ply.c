@@ -8,7 +8,7 @@
 #include "scene/manifest.h"
 #include "scene/ply.h"
 
-enum { COLUMNS = 27 };
+enum { COLUMNS = 18 };
 
 // The columns of the file in their order, and which value of a splat each is; -1: none, 0 in the file.
 static const struct column {
@@ -17,9 +17,6 @@ static const struct column {
 } columns[COLUMNS] = {
     {"x", 0}, {"y", 1}, {"z", 2}, {"nx", -1}, {"ny", -1}, {"nz", -1},
     {"f_dc_0", ORL_SOFT_COLOR}, {"f_dc_1", ORL_SOFT_COLOR + 1}, {"f_dc_2", ORL_SOFT_COLOR + 2},
-    {"f_rest_0", ORL_SOFT_COLOR + 3}, {"f_rest_1", ORL_SOFT_COLOR + 6}, {"f_rest_2", ORL_SOFT_COLOR + 9},
-    {"f_rest_3", ORL_SOFT_COLOR + 4}, {"f_rest_4", ORL_SOFT_COLOR + 7}, {"f_rest_5", ORL_SOFT_COLOR + 10},
-    {"f_rest_6", ORL_SOFT_COLOR + 5}, {"f_rest_7", ORL_SOFT_COLOR + 8}, {"f_rest_8", ORL_SOFT_COLOR + 11},
     {"opacity", ORL_SOFT_OPACITY},
     {"scale_0", ORL_SOFT_SIGMA}, {"scale_1", ORL_SOFT_SIGMA + 1}, {"scale_2", ORL_SOFT_SIGMA + 2},
     {"rot_0", ORL_SOFT_TURN}, {"rot_1", ORL_SOFT_TURN + 1}, {"rot_2", ORL_SOFT_TURN + 2},

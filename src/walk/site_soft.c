@@ -16,10 +16,10 @@ struct record {
     uint8_t opacity;
     uint8_t pixel;       // its logarithm, within the range of all splats
     int8_t turn[4];      // unit quaternion
-    int8_t colors[4][3]; // coefficients, of up to MEAN_MOST, then SLOPE_MOST
+    int8_t color[4];     // coefficients, of up to COLOR_MOST; 0
 };
-_Static_assert(sizeof(struct record) == 36, "the page's layout");
-static const double SIGMA_LOG = 20, MEAN_MOST = 2.5, SLOPE_MOST = 1;
+_Static_assert(sizeof(struct record) == 28, "the page's layout");
+static const double SIGMA_LOG = 20, COLOR_MOST = 2.5;
 
 // Of the sizes of a photograph's pixel that are known.
 struct range {
@@ -55,9 +55,8 @@ static struct record pack(const float s[ORL_SOFT_VALUES], const struct range *pi
         length = hypot(length, (double)s[ORL_SOFT_TURN + k]);
     for (int k = 0; k < 4; k++)
         r.turn[k] = (int8_t)fraction((double)s[ORL_SOFT_TURN + k] / length, -1, 127);
-    for (int k = 0; k < 12; k++)
-        r.colors[k / 3][k % 3] = (int8_t)fraction((double)s[ORL_SOFT_COLOR + k] / (k < 3 ? MEAN_MOST : SLOPE_MOST), -1,
-                                                  127);
+    for (int k = 0; k < 3; k++)
+        r.color[k] = (int8_t)fraction((double)s[ORL_SOFT_COLOR + k] / COLOR_MOST, -1, 127);
     return r;
 }
 

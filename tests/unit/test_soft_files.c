@@ -17,7 +17,7 @@ static void test_file(void **state)
     assert_int_equal(orl_soft_add(NULL, &model, place, 0.5, 0.25f, rgb), ORL_OK);
     assert_int_equal(orl_soft_add(NULL, &model, place, 2, 0.001f, rgb), ORL_OK); // too faint to be read
     for (int k = 0; k < ORL_SOFT_VALUES; k++)
-        if (k != ORL_SOFT_OPACITY)
+        if (k != ORL_SOFT_OPACITY && k < ORL_SOFT_COLOR + 3)
             model.splats[0][k] = (float)(k + 1) / 8;
     assert_int_equal(orl_soft_write(NULL, path, &model), ORL_OK);
     assert_int_equal(orl_soft_read(NULL, path, &read), ORL_OK);

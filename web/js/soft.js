@@ -2,7 +2,7 @@
 // farthest first.
 import {dot} from "./math.js";
 
-const BYTES = 36, WORDS = BYTES / 4; // of a splat, as src/walk/site_soft.c packs it
+const BYTES = 28, WORDS = BYTES / 4; // of a splat, as src/walk/site_soft.c packs it
 const SPLATS_MAX = 2 ** 24;          // a double holds a number below it beside 29 bits of a depth
 const NEAR = 1e-3;                   // as shaders/soft/seen.glsl
 const COARSE = 80;                   // as src/render/paint/soft_layer.c
@@ -30,7 +30,7 @@ export class Soft {
         gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
         gl.bufferData(gl.ARRAY_BUFFER, data.byteLength, gl.DYNAMIC_DRAW);
         const rows = [[3, gl.FLOAT, 0], [3, gl.UNSIGNED_SHORT, 12], [2, gl.UNSIGNED_BYTE, 18], [4, gl.BYTE, 20],
-                      ...[24, 27, 30, 33].map(at => [3, gl.BYTE, at])];
+                      [3, gl.BYTE, 24]];
         rows.forEach(([count, type, at], i) => {
             gl.enableVertexAttribArray(i);
             gl.vertexAttribPointer(i, count, type, true, BYTES, at);

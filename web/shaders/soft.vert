@@ -3,7 +3,7 @@ layout(location = 0) in vec3 place;        // world
 layout(location = 1) in vec3 sigma;        // logarithms of the standard deviations, from -SIGMA_LOG to SIGMA_LOG
 layout(location = 2) in vec2 opacity;      // y: logarithm of the pixel that it was adjusted in, within pixel_range
 layout(location = 3) in vec4 turn;
-layout(location = 4) in mat4x3 harmonics;   // parts of MEAN_MOST, then SLOPE_MOST
+layout(location = 4) in vec3 harmonic;     // parts of COLOR_MOST
 uniform mat3 rotation;                     // camera from world
 uniform vec3 eye;
 uniform vec4 focal;                        // fx fy cx cy, pixels
@@ -20,11 +20,11 @@ mat3 view_rotation()
 
 #include "soft/seen.glsl"
 
-const float SIGMA_LOG = 20.0, MEAN_MOST = 2.5, SLOPE_MOST = 1.0;
+const float SIGMA_LOG = 20.0, COLOR_MOST = 2.5;
 
 void main()
 {
-    vec3 from_eye = place - eye, p = rotation * from_eye;
+    vec3 p = rotation * (place - eye);
     float pixel = pixel_range.x * exp2(pixel_range.y * opacity.y) * focal.x / p.z;
     splat s = splat(place, exp(SIGMA_LOG * (2.0 * sigma - 1.0)), opacity.x, normalize(turn), 1.0);
     seen_splat seen;
@@ -36,6 +36,5 @@ void main()
     }
     centre = seen.centre;
     shape = vec4(seen.inverse, seen.opacity);
-    color = max(splat_color(MEAN_MOST * harmonics[0], SLOPE_MOST * harmonics[1], SLOPE_MOST * harmonics[2],
-                            SLOPE_MOST * harmonics[3], normalize(from_eye)), 0.0);
+    color = max(splat_color(COLOR_MOST * harmonic), 0.0);
 }
