@@ -6,7 +6,7 @@
 
 // Vectors of four that describe a splat: position (world), logit of the opacity; logarithms of the standard
 // deviations along its axes, size of a training photograph's pixel where the splat was first seen (0: never);
-// its rotation, a quaternion wxyz of any length; and its sRGB colour less a half, as the
+// its rotation, a quaternion wxyz of any length; and its colour (sRGB less a half) as the
 // coefficient of the constant spherical harmonic, 0.
 #define ORL_SOFT_VEC4S 4
 // Vectors of four that describe a projected splat: centre (pixels), first two entries of the inverse

@@ -2,12 +2,12 @@
 #include "shared/srgb.glsl"
 #include "soft/luma.glsl"
 
-// A difference in luma between the picture and the splats of less than this says little about colour.
+// Luma of sRGB. Where picture and splats differ by less, luma cannot tell how far a pixel should go, and it goes less far.
 const float GAP_SURE = 0.04;
 
 // own: linear colour, coverage; soft: sRGB colour of the splats, what passes; more: the correction, in luma of sRGB. A
-// pixel goes as far towards the splats as makes its luma greater by `more`, but not past them: splats are blurred where
-// photographs are sharp, and what overshoots stands out as a speck. mix_share of what is left follows.
+// pixel goes so far towards the splats that its luma grows by about `more`, but not past them: splats are blurred where
+// photographs are sharp, and what overshoots stands out as a speck. Then it goes mix_share of the way that is left.
 vec4 soft_mixed(vec4 own, vec4 soft, float more, float mix_share)
 {
     vec3 white = clamp(own.rgb, 0.0, 1.0), picture = srgb_encode(white);

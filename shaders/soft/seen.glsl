@@ -41,7 +41,7 @@ mat2x3 splat_footprint(splat s, vec3 p)
     return mat2x3(s.sigma * (to_axes * (to_world * jacobian[0])), s.sigma * (to_axes * (to_world * jacobian[1])));
 }
 
-// sRGB.
+// The colour, sRGB, of this coefficient.
 vec3 splat_color(vec3 harmonic)
 {
     return 0.5 + HARMONIC_0 * harmonic;
