@@ -19,7 +19,7 @@ layout(rgba32f, binding = 4) uniform imageBuffer square;
 const float FORGET_1 = 0.9, FORGET_2 = 0.99;
 // Step sizes. Places move by parts of the size that a photograph's pixel has there; sizes stay between
 // SIGMA_MIN and SIGMA_MAX of it.
-const float STEP_PLACE = 0.03, STEP_SIGMA = 0.01, STEP_TURN = 0.004, STEP_OPACITY = 0.05, STEP_COLOR = 0.02;
+const float STEP_PLACE = 0.25, STEP_SIGMA = 0.08, STEP_TURN = 0.02, STEP_OPACITY = 0.05, STEP_COLOR = 0.06;
 const float SIGMA_MIN = 0.05, SIGMA_MAX = 30.0;
 
 void main()
