@@ -24,7 +24,7 @@ enum { GRID = 4, FAR_VIEWS = 3 };
 // One of CHECKED photographs, at least CHECKS_MIN of them, or one of two, and at most CHECKS_MAX, waits for the last
 // third of the steps, so that the shares of the splats can be found on what they have not seen.
 enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
-enum { STEPS_OF_PHOTO = 20, STEPS_MAX = 2000 }; // unless they are asked for
+enum { STEPS_OF_PHOTO = 20, STEPS_MIN = 200, STEPS_MAX = 1200 }; // the last two: in all, unless steps are asked for
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
 static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.5f, 0.75f, 1};
 static const size_t MIX_SHARES = 4; // so many of them are tried for opt.soft_mix
@@ -392,7 +392,9 @@ static enum orl_result run(struct refine *r, struct orl_gpu *gpu)
     ORL_TRY_MEMORY(r->state_path);
     ORL_TRY(orl_validation_check(r->log, r->scene, &train));
     r->checks = (size_t)fmin(fmin(fmax((double)(train / CHECKED), CHECKS_MIN), (double)(train / 2)), CHECKS_MAX);
-    r->steps = r->params->steps ? r->params->steps : fmin(STEPS_OF_PHOTO, (double)STEPS_MAX / (double)train);
+    const double photographs = (double)train;
+    r->steps = r->params->steps ? r->params->steps
+                                : fmin(fmax(STEPS_OF_PHOTO, STEPS_MIN / photographs), STEPS_MAX / photographs);
     if (!(r->photos = orl_array(r->log, train, sizeof *r->photos)))
         return ORL_ERR_MEMORY;
     ORL_TRY(read_photos(r, false));

@@ -11,7 +11,7 @@
 
 // There are fewer splats for few or small photographs, and where device memory is short.
 #define ORL_REFINE_OPTIONS(ROW) \
-    ROW(steps, "steps", INT(0, 0, 10000, "N"), "steps for each photograph; default: 20, fewer above 100 photographs") \
+    ROW(steps, "steps", INT(0, 0, 10000, "N"), "steps for each photograph; default: 20, but 200 to 1200 in all") \
     ROW(splats, "splats", INT(300000, 1000, 10000000, "N"), "splats to begin with, at most") \
     ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of the photographs' size") \
     ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
