@@ -201,7 +201,7 @@ static enum orl_result measure_all(struct job *job)
         if (orl_progress_cancelled(progress))
             return ORL_ERR_CANCELLED;
         result = measure(job, &eval->views[i]);
-        if (result != ORL_OK)
+        if (result != ORL_OK && result != ORL_ERR_CANCELLED)
             orl_logf(job->log, ORL_LOG_ERROR, "%s: could not be measured", name);
     }
     if (result == ORL_OK)
