@@ -176,7 +176,7 @@ static void test_size_of_the_view(void **state)
     orl_soft_finish(&model);
 }
 
-// A far splat of the wrong colour, size and place, adjusted to a picture of the right one.
+// A far splat of the wrong colour, a quarter of the size and four pixels off, adjusted to a picture of the right one.
 static void test_descent(void **state)
 {
     (void)state;
@@ -189,17 +189,19 @@ static void test_descent(void **state)
         memcpy(photo.color.f32 + 3 * i, picture.f32 + 4 * i, 3 * sizeof(float));
     struct orl_soft_descent_params params = {.steps = 200, .first_size = 1, .part_s = HUGE_VAL};
     struct orl_soft_descent_report report = {0}, parts = {0}, none = {0};
-    add(&model, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
+    add(&model, 0.25, 4, 0.1, 0.6f, 0.3f, 0.6f);
     double before = loss_of(&model, &photo, NULL);
     assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &model, &report), ORL_OK);
     assert_int_equal(report.steps, 200);
     assert_true(loss_of(&model, &photo, NULL) < 0.2 * before);
+    assert_float_equal(model.splats[0][ORL_SOFT_PLACE], 0, 0.01);
+    assert_float_equal(model.splats[0][ORL_SOFT_SIGMA], log(0.4), 0.1);
     assert_float_equal(model.splats[0][ORL_SOFT_PIXEL], 4 / 64.0, 1e-4);
 
     // The same again in parts of a step, to the bit; and none of it where the photograph shows what stands before the scene.
     struct orl_soft_model again = {0}, still = {0};
-    add(&again, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
-    add(&still, 0.02, 4, 0.3, 0.6f, 0.3f, 0.6f);
+    add(&again, 0.25, 4, 0.1, 0.6f, 0.3f, 0.6f);
+    add(&still, 0.25, 4, 0.1, 0.6f, 0.3f, 0.6f);
     for (params.part_s = 0; !parts.done;)
         assert_int_equal(orl_soft_descend(gpu, &photo, 1, &params, &again, &parts), ORL_OK);
     assert_memory_equal(model.splats, again.splats, sizeof *model.splats);
