@@ -24,7 +24,8 @@ enum { GRID = 4, FAR_VIEWS = 3 };
 // One of CHECKED photographs, at least CHECKS_MIN of them, or one of two, and at most CHECKS_MAX, waits for the last
 // third of the steps, so that the shares of the splats can be found on what they have not seen.
 enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
-enum { STEPS_OF_PHOTO = 20, STEPS_MIN = 200, STEPS_MAX = 1200 }; // the last two: in all, unless steps are asked for
+// Steps for each photograph, and the fewest and the most for all photographs together, unless a number is asked for.
+enum { STEPS_OF_PHOTO = 20, STEPS_MIN = 200, STEPS_MAX = 1200 };
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
 static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.5f, 0.75f, 1};
 static const size_t MIX_SHARES = 4; // so many of them are tried for opt.soft_mix
@@ -36,7 +37,7 @@ enum { PLACES_TRIED = 1000 }; // so many tell in how many photographs a place is
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 // Entries in the lists of a view's tiles that device memory is planned for: so many for a splat and for a pixel.
-// More than 4 for a pixel are needed where every photograph shows the whole subject (docs/how/oriel.md).
+// More are needed where every photograph shows the whole subject (docs/how/oriel.md).
 enum { SPLAT_ENTRIES = 5, PIXEL_ENTRIES = 6, SPLATS_MIN = 1000 };
 static const double KEEP_EVERY = 20; // the state is kept so many times as long apart as keeping it takes
 
