@@ -40,7 +40,6 @@ enum { ORL_OPTION_NAME_BYTES = 32 };
 // no keys:
 struct orl_render_params {
     unsigned leave_out;     // layers that are not read back, whose images stay empty
-    bool every_point;       // splats are not thinned where many fall into a pixel
     enum orl_sample sample; // decides which options are read; set by the renderer
 #define ORL_SLOT_FIELD(field, type, preset, readers, help) const struct type *field;
 #define ORL_FILE_FIELD(field, preset, readers, help) char field[ORL_OPTION_NAME_BYTES];

@@ -6,7 +6,7 @@
 // Number of depth steps within the front layer (opt.front_layer).
 const float SPLAT_LAYER_STEPS = 64.0;
 // A pixel of splat_layer holds the sum of depth steps in the low bits and the count of points above
-// them. It is exact for up to 8191 points in one pixel.
+// them. It is exact for up to 8191 points in one pixel; with more, the depth stays within the front layer.
 const uint SPLAT_LAYER_COUNT = 1u << 19;
 
 // Rotates a world vector into the camera frame.
@@ -38,32 +38,25 @@ bool splat_pixel(vec3 p, out vec2 pixel)
 
 #ifdef SPLAT_LIST
 layout(rg32ui, binding = 0) readonly uniform uimageBuffer points; // proxy/point.glsl
-layout(r32ui, binding = 1) readonly uniform uimageBuffer items;      // from splat_cull.comp
+layout(r32ui, binding = 1) readonly uniform uimageBuffer listed; // from splat_cull.comp
 layout(r32ui, binding = 2) readonly uniform uimageBuffer draw_arguments;
 layout(binding = 0) uniform samplerBuffer blocks; // ORL_BLOCK_VEC4S each
 
-// This invocation's k-th point of the list and its block; -1: none.
-ivec2 splat_listed_point(int k)
+// This invocation's point of the group's k-th listed block; -1: none.
+int splat_listed_point(int k)
 {
-    uint index = (gl_WorkGroupID.x * ORL_SPLAT_POINTS + uint(k)) *
-                     (ORL_POINT_GROUP / ORL_ITEM_POINTS) +
-                 gl_LocalInvocationID.x / ORL_ITEM_POINTS;
-    uint count = imageLoad(draw_arguments, 3).x;
-    uint item = imageLoad(items, int(min(index, max(count, 1u) - 1u))).x;
-    int block = int(item & ((1u << ORL_ITEM_BLOCK_BITS) - 1u));
-    int part = int(item >> ORL_ITEM_BLOCK_BITS);
-    int point = (part * (point_count / ORL_BLOCK_POINTS) + block) * ORL_ITEM_POINTS +
-                int(gl_LocalInvocationID.x) % ORL_ITEM_POINTS;
-    return index < count ? ivec2(point, block) : ivec2(-1);
+    uint index = gl_WorkGroupID.x * ORL_SPLAT_POINTS + uint(k), count = imageLoad(draw_arguments, 3).x;
+    int block = int(imageLoad(listed, int(min(index, max(count, 1u) - 1u))).x);
+    return index < count ? block * ORL_BLOCK_POINTS + int(gl_LocalInvocationID.x) : -1;
 }
 
 // Position of that point in the camera frame; behind the eye if there is none. Without a branch,
 // the view's parameters are loaded once for all points of an invocation.
-vec3 splat_listed_position(ivec2 listed)
+vec3 splat_listed_position(int point)
 {
-    uvec2 code = imageLoad(points, max(listed.x, 0)).xy;
-    vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * max(listed.y, 0) + 3);
+    uvec2 code = imageLoad(points, max(point, 0)).xy;
+    vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * (max(point, 0) / ORL_BLOCK_POINTS) + 2);
     vec3 p = splat_camera_position(code, corner);
-    return listed.x < 0 || !point_exists(code) ? vec3(0.0, 0.0, -1.0) : p;
+    return point < 0 || !point_exists(code) ? vec3(0.0, 0.0, -1.0) : p;
 }
 #endif

@@ -2,7 +2,7 @@
 #define SPLAT_LIST
 #include "proxy/splat.glsl"
 
-layout(local_size_x = ORL_POINT_GROUP) in;
+layout(local_size_x = ORL_BLOCK_POINTS) in;
 layout(r32ui, binding = 3) uniform uimage2D splat_depth; // all bits set: empty
 
 void main()

@@ -4,14 +4,14 @@
 #define SPLAT_LIST
 #include "proxy/splat.glsl"
 
-layout(local_size_x = ORL_POINT_GROUP) in;
+layout(local_size_x = ORL_BLOCK_POINTS) in;
 layout(r32ui, binding = 3) readonly uniform uimage2D splat_depth;
 layout(r32ui, binding = 4) uniform uimage2D splat_index; // all bits set: empty
 layout(r32ui, binding = 5) uniform uimage2D splat_layer;
 
 void main()
 {
-    ivec2 point[ORL_SPLAT_POINTS];
+    int point[ORL_SPLAT_POINTS];
     vec3 p[ORL_SPLAT_POINTS];
     for (int k = 0; k < ORL_SPLAT_POINTS; k++) {
         point[k] = splat_listed_point(k);
@@ -25,7 +25,7 @@ void main()
         float front = uintBitsToFloat(front_bits);
         float behind = p[k].z - front, thickness = front * front_layer;
         if (drawn && floatBitsToUint(p[k].z) == front_bits)
-            imageAtomicMin(splat_index, at, uint(first_point + point[k].x));
+            imageAtomicMin(splat_index, at, uint(first_point + point[k]));
         if (drawn && behind < thickness) {
             uint steps = uint(behind / thickness * SPLAT_LAYER_STEPS);
             imageAtomicAdd(splat_layer, at, SPLAT_LAYER_COUNT + steps);

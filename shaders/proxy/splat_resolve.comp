@@ -24,42 +24,17 @@ layout(rgba32f, binding = 4) writeonly uniform image2D coarse_a;
 layout(rg32ui, binding = 5) writeonly uniform uimage2D coarse_b;
 #ifdef CHUNKS
 layout(rgba32ui, binding = 6) uniform uimage2D won; // surfels of this and earlier chunks
-layout(std430, binding = 2) readonly buffer block_enlarged {
-    float enlarged[]; // factor on the radii of each block
-};
-#else
-layout(r32f, binding = 6) readonly uniform imageBuffer block_enlarged;
 #endif
-
-float radius_factor(int block)
-{
-#ifdef CHUNKS
-    return enlarged[block];
-#else
-    return imageLoad(block_enlarged, block).x;
-#endif
-}
 
 vec2 splat_ray(vec2 pixel)
 {
     return (pixel - focal.zw) / focal.xy;
 }
 
-// Block of a point. It is the remainder of an integer division, computed in floats, since integers
-// divide slowly. Both operands are exact below 2^24, but a quotient may be off by 2.5 units in the
-// last place: one that is a whole number may be rounded down to the next smaller one.
-int block_of(int point)
-{
-    int item = point / ORL_ITEM_POINTS, count = point_count / ORL_BLOCK_POINTS;
-    int block = item - count * int(float(item) / float(count));
-    return block + (block < 0 ? count : block < count ? 0 : -count);
-}
-
 surfel splat(ivec2 at, int point)
 {
-    int block = block_of(point);
     uvec2 code = imageLoad(points, point).xy;
-    vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * block + 3);
+    vec4 corner = texelFetch(blocks, ORL_BLOCK_VEC4S * (point / ORL_BLOCK_POINTS) + 2);
     vec3 p = splat_camera_position(code, corner);
     vec2 pixel;
     splat_pixel(p, pixel);
@@ -68,7 +43,7 @@ surfel splat(ivec2 at, int point)
     float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
     p *= 1.0 + behind * front_layer;
     vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
-    float radius = point_radius(code, corner.w) * splat_scale * radius_factor(block);
+    float radius = point_radius(code, corner.w) * splat_scale;
     bool outlier = p.z < near && radius * focal.y > OUTLIER_SHARE * float(view_size.y) * p.z;
     radius = outlier ? 0.0 : radius;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,

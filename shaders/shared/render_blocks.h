@@ -4,17 +4,13 @@
 
 #include "shared/interop.h"
 
-// Number of points that are culled and thinned together (ORL_BLOCK_POINTS), and that one item of
-// the draw list holds (ORL_ITEM_POINTS).
+// Number of points that are culled together.
 #define ORL_BLOCK_POINTS 128
-#define ORL_ITEM_POINTS 8
-// An item: its block, and above that which part of the block. A chunk has fewer blocks.
-#define ORL_ITEM_BLOCK_BITS 24
 // Texels that describe a block: centre of its bounds and points per unit of area; half extent of the
-// bounds and number of points; mean normal; corner that positions are counted from and their unit
+// bounds and number of points; corner that positions are counted from and their unit
 // (src/scene/point_code.h).
-#define ORL_BLOCK_VEC4S 4
-// Number of points that one invocation draws.
+#define ORL_BLOCK_VEC4S 3
+// Number of points that one invocation draws, each of another block.
 #define ORL_SPLAT_POINTS 4
 
 // The view into which points are splatted.
@@ -29,8 +25,8 @@ ORL_BLOCK(splat_block)
     INT(first_point);   // index of the chunk's first point
     FLOAT(splat_scale); // this and the next: the options of the same names
     FLOAT(front_layer);
-    FLOAT(points_per_pixel); // more than these are thinned; 0: none are
     FLOAT(near);        // depth nearer than which large splats are outliers
+    FLOAT(unused);
 };
 #endif
 

@@ -226,22 +226,18 @@ static void describe_block(float (*const positions)[3], const struct orl_points 
 {
     for (int k = 0; k < 3; k++) {
         float low = positions[0][k], high = low;
-        double normal = 0;
         for (size_t i = 0; i < count; i++) {
             low = fminf(low, positions[i][k]);
             high = fmaxf(high, positions[i][k]);
-            normal += points->normal[order[i]][k];
         }
         block[0][k] = 0.5f * low + 0.5f * high;
         // Measured from the rounded middle, so that no point lies outside.
         block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
-        block[2][k] = (float)(normal / (double)count);
-        block[3][k] = frame->origin[k];
+        block[2][k] = frame->origin[k];
     }
     block[0][3] = density(positions, points, order, count);
     block[1][3] = (float)count;
-    block[2][3] = 0; // nothing, but it gets into files
-    block[3][3] = frame->step;
+    block[2][3] = frame->step;
 }
 
 void orl_point_block_make(const struct orl_points *points, const uint32_t *order,

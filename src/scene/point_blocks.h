@@ -1,5 +1,5 @@
 // Private: points in blocks of neighbours, as the device stores them and files of levels of detail
-// have them. A block can be skipped or thinned as a whole.
+// have them. A block can be skipped as a whole.
 #ifndef ORL_SCENE_POINT_BLOCKS_H
 #define ORL_SCENE_POINT_BLOCKS_H
 

@@ -191,17 +191,17 @@ int orl_lod_children(const struct orl_lod *lod, size_t page, size_t *first, size
 
 static void take_block(const struct orl_lod_data *data, size_t b, struct orl_points *points)
 {
-    const float *corner = data->blocks[b][3];
+    const float *corner = data->blocks[b][2];
     const struct point_frame frame = {{corner[0], corner[1], corner[2]}, corner[3]};
     for (size_t i = 0; i < (size_t)data->blocks[b][1][3]; i++) {
-        size_t part = i / ORL_ITEM_POINTS, at = i % ORL_ITEM_POINTS, to = points->count;
-        const uint32_t *geometry = data->geometry[part][b][at];
+        const size_t to = points->count;
+        const uint32_t *geometry = data->geometry[b][i];
         if (!orl_point_decode_position(&frame, geometry, points->position[to]) ||
             !orl_point_usable(points->position[to]))
             continue;
         orl_point_decode_normal(geometry, points->normal[to]);
         points->radius[to] = orl_point_decode_radius(&frame, geometry);
-        memcpy(points->color[to], data->colors[part][b][at], sizeof points->color[to]);
+        memcpy(points->color[to], data->colors[b][i], sizeof points->color[to]);
         points->count++;
     }
 }

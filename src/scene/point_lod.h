@@ -1,8 +1,8 @@
 // Private: SCENE/points.lod, the points of a cloud that is larger than memory, with levels of
 // detail. Level 0 has all points, in blocks (point_blocks.h) along the Morton curve. A block of the
 // next level has the first eighth of each of eight blocks in a row, with radii that cover what is
-// left out, which is what the renderer draws of them from far away. A page is what is read at once:
-// ORL_LOD_BLOCKS blocks in a row. So the pages are a tree, with up to eight children each.
+// left out. A page is what is read at once: ORL_LOD_BLOCKS blocks in a row. So the pages are a tree,
+// with up to eight children each.
 // docs/reference/files.md describes the file.
 #ifndef ORL_SCENE_POINT_LOD_H
 #define ORL_SCENE_POINT_LOD_H
@@ -18,15 +18,14 @@
 enum {
     ORL_LOD_BLOCKS = 64,   // of a page
     ORL_LOD_CHILDREN = 8,  // of a block, and so of a page
-    ORL_LOD_LEVELS_MAX = 12,
-    ORL_LOD_PARTS = ORL_BLOCK_POINTS / ORL_ITEM_POINTS // of a block
+    ORL_LOD_LEVELS_MAX = 12
 };
 
-// A page as it is stored. Its points are ordered by part: the first parts of all blocks come first.
+// A page as it is stored.
 struct orl_lod_data {
     float blocks[ORL_LOD_BLOCKS][ORL_BLOCK_VEC4S][4]; // all 0: no block
-    uint32_t geometry[ORL_LOD_PARTS][ORL_LOD_BLOCKS][ORL_ITEM_POINTS][2]; // of struct point_code
-    uint8_t colors[ORL_LOD_PARTS][ORL_LOD_BLOCKS][ORL_ITEM_POINTS][3];
+    uint32_t geometry[ORL_LOD_BLOCKS][ORL_BLOCK_POINTS][2]; // of struct point_code
+    uint8_t colors[ORL_LOD_BLOCKS][ORL_BLOCK_POINTS][3];
 };
 
 // What is known of a page without reading it.

@@ -8,8 +8,8 @@
 #include "scene/point_blocks.h"
 #include "scene/point_lod.h"
 
-#define LOD_MAGIC "ORLLOD3\n"
-enum { LOD_PAGES_AT = 4096 }; // a multiple of common sectors, as the size of a page is
+#define LOD_MAGIC "ORLLOD4\n"
+enum { LOD_PAGES_AT = 4096 };
 
 struct lod_header {
     char magic[8];
@@ -31,7 +31,7 @@ enum orl_result orl_lod_levels_add(struct lod_levels *levels,
 enum orl_result orl_lod_levels_end(struct lod_levels *levels) ORL_CHECK_RESULT;
 void orl_lod_levels_destroy(struct lod_levels **levels);
 
-static_assert(sizeof(struct orl_lod_data) == 94208, "a page has no padding");
+static_assert(sizeof(struct orl_lod_data) == 93184, "a page has no padding");
 static_assert(sizeof(struct orl_lod_page) == 40, "an entry of the table has no padding");
 static_assert(sizeof(struct lod_header) <= LOD_PAGES_AT, "the header lies before the pages");
 

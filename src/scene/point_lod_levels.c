@@ -138,10 +138,8 @@ static void put_block(const struct point_block *block, struct level *level)
     int b = level->filled++;
     memcpy(page->blocks[b], block->texels, sizeof block->texels);
     for (size_t i = 0; i < ORL_BLOCK_POINTS; i++) {
-        size_t part = i / ORL_ITEM_POINTS, at = i % ORL_ITEM_POINTS;
-        memcpy(page->geometry[part][b][at], block->codes[i].geometry,
-               sizeof block->codes[i].geometry);
-        memcpy(page->colors[part][b][at], block->codes[i].color, sizeof block->codes[i].color);
+        memcpy(page->geometry[b][i], block->codes[i].geometry, sizeof block->codes[i].geometry);
+        memcpy(page->colors[b][i], block->codes[i].color, sizeof block->codes[i].color);
     }
 }
 
@@ -152,7 +150,7 @@ static void take_point(const struct point_block *child, int i, struct orl_points
 {
     float count = child->texels[1][3], drawn = fminf(count, TAKEN);
     const struct point_frame frame = {
-        {child->texels[3][0], child->texels[3][1], child->texels[3][2]}, child->texels[3][3]};
+        {child->texels[2][0], child->texels[2][1], child->texels[2][2]}, child->texels[2][3]};
     const struct point_code *code = &child->codes[i];
     size_t to = taken->count;
     if ((float)i >= count ||

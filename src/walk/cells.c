@@ -7,7 +7,6 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "core/order.h"
 #include "scene/point_blocks.h"
 #include "scene/point_lod.h"
 #include "walk/internal.h"
@@ -16,9 +15,8 @@ enum {
     CELL_POINTS = 4096, // a power of two, for the bit-reversed order within a cell
     CELLS_PER_FILE = 16,
     POINT_BYTES = 12,   // read by web/js/points.js
-    CELL_WORDS = 16,
+    CELL_WORDS = 12,
     COARSE_BYTES = 420 << 10, // of points in the coarse cloud, about
-    NEIGHBOURS = 7,     // points within a point's radius, including itself
 };
 static const uint32_t magic = 0x504c524f; // "ORLP"
 
@@ -26,8 +24,6 @@ static const uint32_t magic = 0x504c524f; // "ORLP"
 struct cell_words {
     float low[3], size[3];           // bounds of its points
     float radius_low, radius_octaves; // radius = low * 2^(octaves * byte / 255)
-    float density;                   // points per unit of area
-    float normal[3];                 // mean
     uint32_t count, coarse;          // number of points; number of these in the coarse file
     uint32_t file, first;            // of the other points: number of the file, index of the first
                                      // point in it
@@ -93,27 +89,23 @@ static void describe_cell(struct cell *cell, size_t count)
 {
     const struct orl_points *points = cell->points;
     struct cell_words *w = &cell->words;
-    float radii[CELL_POINTS];
+    float least = INFINITY, most = 0;
     for (int k = 0; k < 3; k++) {
         float low = INFINITY, high = -INFINITY;
-        double normal = 0;
         for (size_t i = 0; i < count; i++) {
             float p = points->position[cell->index[i]][k];
             low = fminf(low, p);
             high = fmaxf(high, p);
-            normal += (double)points->normal[cell->index[i]][k];
         }
         w->low[k] = low;
         w->size[k] = fmaxf(high - low, 1e-12f);
-        w->normal[k] = (float)(normal / (double)count);
     }
-    for (size_t i = 0; i < count; i++)
-        radii[i] = points->radius[cell->index[i]] * cell->enlarged;
-    qsort(radii, count, sizeof *radii, orl_order_floats);
-    float middle = radii[count / 2];
-    w->radius_low = radii[0];
-    w->radius_octaves = log2f(radii[count - 1] / radii[0]);
-    w->density = NEIGHBOURS / (3.14159265f * middle * middle);
+    for (size_t i = 0; i < count; i++) {
+        least = fminf(least, points->radius[cell->index[i]]);
+        most = fmaxf(most, points->radius[cell->index[i]]);
+    }
+    w->radius_low = least * cell->enlarged;
+    w->radius_octaves = log2f(most / least);
     w->count = (uint32_t)count;
 }
 
@@ -222,7 +214,7 @@ static enum orl_result write_coarse(struct writing *w, json_t **file)
 {
     char path[64];
     snprintf(path, sizeof path, "%spoints/coarse.bin", w->site->folder);
-    const uint32_t header[4] = {magic, 1, (uint32_t)w->order.cells, POINT_BYTES};
+    const uint32_t header[4] = {magic, 2, (uint32_t)w->order.cells, POINT_BYTES};
     size_t cells = w->order.cells * sizeof *w->words;
     size_t size = sizeof header + cells + w->coarse_size;
     uint8_t *data = orl_array(w->site->log, size, 1);

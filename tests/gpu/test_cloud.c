@@ -1,4 +1,4 @@
-// Which points of a cloud are drawn: culling and thinning by blocks.
+// Which points of a cloud are drawn: culling by blocks, and levels of detail.
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,10 @@
 
 static struct orl_gpu *gpu;
 
-enum { SIDE = 64, COUNT = 50000 };
+enum {
+    SIDE = 64, COUNT = 50000,
+    CLOSE = 2, // the front view enlarged so far has 16 points of the wall in a pixel, and two of the next level
+};
 
 // Looks along +z from the origin, 90 degrees wide.
 static const struct orl_view front_view = {
@@ -47,34 +50,37 @@ static void close_scene(struct scene *s)
     orl_points_finish(&s->points);
 }
 
-static void draw(struct scene *s, bool every_point)
+// The front view with so many pixels for each of its own.
+static void draw(struct scene *s, int enlarged)
 {
-    const struct orl_render_params params = {.splat_scale = 1, .front_layer = 0.01f,
-                                             .every_point = every_point};
-    assert_int_equal(orl_proxy_draw(gpu, &s->proxy, &front_view, &params, true,
-                                    &s->proxy.view_target, &s->surface), ORL_OK);
+    const struct orl_render_params params = {.splat_scale = 1, .front_layer = 0.01f};
+    struct orl_view view = front_view;
+    view.camera.width *= enlarged;
+    view.camera.height *= enlarged;
+    view.camera.fx *= enlarged;
+    view.camera.fy *= enlarged;
+    view.camera.cx *= enlarged;
+    view.camera.cy *= enlarged;
+    assert_int_equal(orl_proxy_draw(gpu, &s->proxy, &view, &params, true, &s->proxy.view_target,
+                                    &s->surface), ORL_OK);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
 }
 
-// Items listed by the last draw; marks them, by their first point / ORL_ITEM_POINTS.
+// Blocks listed by the last draw; marks them.
 static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
 {
     const struct point_chunk *chunk = &cloud_of(s)->chunks[0];
     uint32_t args[4];
-    static uint32_t items[COUNT];
+    static uint32_t blocks[COUNT];
     orl_buf_read(chunk->args, 0, sizeof args, args);
     assert_between(args[3], 0, COUNT);
-    assert_true(args[0] * (size_t)(ORL_POINT_GROUP * ORL_SPLAT_POINTS) >=
-                args[3] * (size_t)ORL_ITEM_POINTS);
-    orl_buf_read(chunk->items, 0, args[3] * sizeof *items, items);
+    assert_int_equal(args[0], (args[3] + ORL_SPLAT_POINTS - 1) / ORL_SPLAT_POINTS);
+    orl_buf_read(chunk->list, 0, args[3] * sizeof *blocks, blocks);
     memset(listed, 0, capacity);
     for (uint32_t i = 0; i < args[3]; i++) {
-        uint32_t part = items[i] >> ORL_ITEM_BLOCK_BITS;
-        uint32_t block = items[i] & ((1u << ORL_ITEM_BLOCK_BITS) - 1);
-        size_t item = (size_t)part * (size_t)chunk->block_count + block;
-        assert_true(item < capacity);
-        assert_false(listed[item]);
-        listed[item] = true;
+        assert_true(blocks[i] < capacity);
+        assert_false(listed[blocks[i]]);
+        listed[blocks[i]] = true;
     }
     return args[3];
 }
@@ -90,7 +96,7 @@ static void read_positions(const struct point_chunk *chunk, float (*positions)[3
     orl_buf_read(chunk->points, 0, (size_t)chunk->count * sizeof *codes, codes);
     orl_buf_read(chunk->blocks, 0, (size_t)chunk->block_count * sizeof *blocks, blocks);
     for (int i = 0; i < chunk->count; i++) {
-        const float *corner = blocks[i / ORL_ITEM_POINTS % chunk->block_count][3];
+        const float *corner = blocks[i / ORL_BLOCK_POINTS][2];
         const struct point_frame frame = {{corner[0], corner[1], corner[2]}, corner[3]};
         exists[i] = orl_point_decode_position(&frame, codes[i], positions[i]);
     }
@@ -112,10 +118,10 @@ static void blocks_outside_are_skipped(void **state)
     s.points.position[7][0] = NAN; // dropped
     s.points.position[9][2] = 1e30f;
     open_scene(&s);
-    draw(&s, true);
+    draw(&s, 1);
     const struct point_chunk *chunk = &cloud_of(&s)->chunks[0];
     static bool listed[COUNT];
-    size_t items = read_list(&s, listed, COUNT);
+    size_t blocks = read_list(&s, listed, COUNT);
     static float positions[CAPACITY][3];
     static bool exists[CAPACITY];
     read_positions(chunk, positions, exists);
@@ -125,12 +131,12 @@ static void blocks_outside_are_skipped(void **state)
         stored += exists[i];
         if (exists[i] && p[2] > 0 && fabsf(p[0]) < p[2] && fabsf(p[1]) < p[2]) {
             seen++;
-            assert_true(listed[i / ORL_ITEM_POINTS]);
+            assert_true(listed[i / ORL_BLOCK_POINTS]);
         }
     }
     assert_int_equal(stored, COUNT - 1);
     assert_true(seen > COUNT / 8);
-    assert_true(items * ORL_ITEM_POINTS < 2 * seen);
+    assert_true(blocks * ORL_BLOCK_POINTS < 2 * seen);
     close_scene(&s);
 }
 
@@ -150,20 +156,16 @@ static void make_wall(struct scene *s)
     }
 }
 
-static void dense_blocks_are_thinned_without_holes(void **state)
+static void a_wall_has_no_holes(void **state)
 {
     (void)state;
     struct scene s = {0};
-    static bool listed[8 * COUNT];
+    static bool listed[COUNT];
     static float depth[SIDE * SIDE];
     make_wall(&s);
     open_scene(&s);
-    draw(&s, true);
-    assert_int_equal(read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS, 64 * SIDE * SIDE);
-    draw(&s, false);
-    double share = (double)read_list(&s, listed, sizeof listed) * ORL_ITEM_POINTS / (SIDE * SIDE);
-    print_message("%.2f points a pixel for 4\n", share);
-    assert_true(share >= 4 && share < 9);
+    draw(&s, 1);
+    assert_int_equal(read_list(&s, listed, sizeof listed) * ORL_BLOCK_POINTS, 64 * SIDE * SIDE);
     orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_float_equal(depth[i], 2.0005, 0.001);
@@ -180,7 +182,7 @@ static void runs_are_the_same(void **state)
     open_scene(&s);
     for (int run = 0; run < 5; run++) {
         int to = run > 0 ? 1 : 0;
-        draw(&s, false);
+        draw(&s, 1);
         orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[to], depth[to]);
         orl_tex_read(s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[to], normal[to]);
         if (run == 0)
@@ -204,7 +206,7 @@ static void chunks_draw_as_one(void **state)
         caps->max_buffer_texels = run ? 150000 : texels;
         open_scene(&s);
         assert_int_equal(cloud_of(&s)->chunk_count, run ? 6 : 1);
-        draw(&s, false);
+        draw(&s, 1);
         orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
         orl_tex_read(s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
         close_scene(&s);
@@ -250,7 +252,7 @@ static void close_pages(struct paged *p)
 static void pages_draw_as_the_whole(void **state)
 {
     (void)state;
-    static float depth[2][SIDE * SIDE], normal[2][SIDE * SIDE * 4];
+    static float depth[2][CLOSE * SIDE * CLOSE * SIDE], normal[2][CLOSE * SIDE * CLOSE * SIDE * 4];
     for (int run = 0; run < 2; run++) {
         struct paged p = {0};
         if (run == 0) {
@@ -259,7 +261,7 @@ static void pages_draw_as_the_whole(void **state)
         } else {
             open_pages(&p, 0);
         }
-        draw(&p.s, true);
+        draw(&p.s, CLOSE);
         orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[run], depth[run]);
         orl_tex_read(p.s.surface.normal, 0, GL_RGBA, GL_FLOAT, sizeof normal[run], normal[run]);
         if (run == 0)
@@ -277,21 +279,18 @@ static void few_pages_leave_no_hole(void **state)
 {
     (void)state;
     struct paged p = {0};
-    static float depth[2][SIDE * SIDE];
+    static float depth[3][CLOSE * SIDE * CLOSE * SIDE];
     open_pages(&p, 1); // the least: 16 pages; the wall's finest level has 32
     assert_true(p.lod->levels[0].count > 16);
     for (int run = 0; run < 3; run++) {
-        draw(&p.s, run != 1);
-        float *to = depth[run == 2];
-        orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[0], to);
-        for (int i = 0; i < SIDE * SIDE; i++)
-            assert_float_equal(to[i], 2.0005, 0.002);
-        if (run == 0)
-            memcpy(depth[1], depth[0], sizeof depth[0]);
+        const int side = (run == 1 ? 1 : CLOSE) * SIDE;
+        const size_t bytes = (size_t)side * (size_t)side * sizeof **depth;
+        draw(&p.s, side / SIDE);
+        orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, bytes, depth[run]);
+        for (int i = 0; i < side * side; i++)
+            assert_float_equal(depth[run][i], 2.0005, 0.002);
     }
-    draw(&p.s, true);
-    orl_tex_read(p.s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth[0], depth[0]);
-    assert_memory_equal(depth[0], depth[1], sizeof depth[0]);
+    assert_memory_equal(depth[0], depth[2], sizeof depth[0]);
     close_pages(&p);
 }
 
@@ -303,7 +302,7 @@ static void no_points_are_no_depth(void **state)
     assert_int_equal(orl_points_init(NULL, &s.points, 1), ORL_OK);
     s.points.position[0][1] = INFINITY;
     open_scene(&s);
-    draw(&s, false);
+    draw(&s, 1);
     orl_tex_read(s.surface.depth, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_float_equal(depth[i], 0, 0);
@@ -315,7 +314,7 @@ int main(void)
     gpu = gpu_test_device();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_outside_are_skipped),
-        cmocka_unit_test(dense_blocks_are_thinned_without_holes),
+        cmocka_unit_test(a_wall_has_no_holes),
         cmocka_unit_test(runs_are_the_same),
         cmocka_unit_test(chunks_draw_as_one),
         cmocka_unit_test(pages_draw_as_the_whole),

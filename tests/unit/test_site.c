@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "walk/internal.h"
 
-enum { HEADER = 16, CELL = 64, POINT = 12 };
+enum { HEADER = 16, CELL = 48, POINT = 12 };
 
 struct setup {
     char *dir;
@@ -114,10 +114,10 @@ static void test_points_come_back(void **state)
     uint8_t *seen = orl_array(&s.log, SIDE * SIDE, 1);
     for (uint32_t c = 0; c < s.cells; c++) {
         const uint8_t *cell = coarse + HEADER + CELL * c;
-        uint32_t count = number(cell, 12), first = number(cell, 13), file = number(cell, 14);
+        uint32_t count = number(cell, 8), first = number(cell, 9), file = number(cell, 10);
         for (uint32_t i = 0; i < count; i++) {
             const uint8_t *point = i < first ? next + POINT * i
-                                             : rest[file] + POINT * (number(cell, 15) + i - first);
+                                             : rest[file] + POINT * (number(cell, 11) + i - first);
             float p[3], radius;
             decode(cell, point, p, &radius);
             size_t x = (size_t)lrintf(p[0] * SIDE), y = (size_t)lrintf(p[1] * SIDE);
@@ -160,14 +160,14 @@ static void test_first_parts_are_spread(void **state)
     size_t size;
     const uint8_t *cell = s.coarse + HEADER, *points = s.coarse + HEADER + CELL * s.cells;
     uint8_t *rest = read_file(&s, "points/0000.bin", &size);
-    int some[9] = {0}, all[9] = {0}, first = 90, coarse = (int)number(cell, 13);
+    int some[9] = {0}, all[9] = {0}, first = 90, coarse = (int)number(cell, 9);
     assert_true(coarse >= first);
     for (int i = 0; i < first; i++)
         count_ninth(cell, points + POINT * i, some);
-    for (int i = 0; i < (int)number(cell, 12); i++)
+    for (int i = 0; i < (int)number(cell, 8); i++)
         count_ninth(cell, i < coarse ? points + POINT * i : rest + POINT * (i - coarse), all);
     for (int k = 0; k < 9; k++) {
-        float share = (float)all[k] * (float)first / (float)number(cell, 12);
+        float share = (float)all[k] * (float)first / (float)number(cell, 8);
         assert_true(fabsf((float)some[k] - share) <= 0.5f * share + 1);
     }
     free(rest);

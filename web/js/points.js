@@ -1,12 +1,12 @@
 // The point cloud: cells in one vertex buffer, coarse parts first, and what of it a view draws.
-import {add, dot, length, rotate, row, scale, sub} from "./math.js";
+import {add, dot, rotate, row, scale, sub} from "./math.js";
 
-const MAGIC = 0x504c524f, HEADER_BYTES = 16, CELL_WORDS = 16, POINT_BYTES = 12;
+const MAGIC = 0x504c524f, HEADER_BYTES = 16, CELL_WORDS = 12, POINT_BYTES = 12;
 
 function readCells(data)
 {
     const header = new Uint32Array(data, 0, 4);
-    if (header[0] !== MAGIC || header[1] !== 1 || header[3] !== POINT_BYTES)
+    if (header[0] !== MAGIC || header[1] !== 2 || header[3] !== POINT_BYTES)
         throw new Error("points/coarse.bin: not what this page reads");
     const cells = [];
     let base = 0;
@@ -14,9 +14,8 @@ function readCells(data)
         const at = HEADER_BYTES + 4 * CELL_WORDS * i;
         const f = new Float32Array(data, at, CELL_WORDS), u = new Uint32Array(data, at, CELL_WORDS);
         cells.push({low: [f[0], f[1], f[2]], size: [f[3], f[4], f[5]], radiusLow: f[6],
-                    radiusOctaves: f[7], density: f[8], normal: [f[9], f[10], f[11]], count: u[12],
-                    loaded: 0, coarse: u[13], file: u[14], first: u[15], base});
-        base += u[12];
+                    radiusOctaves: f[7], count: u[8], loaded: 0, coarse: u[9], file: u[10], first: u[11], base});
+        base += u[8];
     }
     return {cells, stride: header[3], points: base,
             coarseAt: HEADER_BYTES + 4 * CELL_WORDS * header[2]};
@@ -88,35 +87,17 @@ export class Cloud {
         }
     }
 
-    // Cells that the camera may see, with how many of their points to draw and what their radii are
-    // multiplied by: where points fall several to a pixel, a first part stands for all.
-    visible(camera, pointsPerPixel)
-    {
-        const list = [];
-        for (const cell of this.cells) {
-            const share = visibleShare(cell, camera, pointsPerPixel);
-            const count = Math.min(cell.loaded, Math.ceil(cell.count * share));
-            if (count > 0)
-                list.push({cell, count, enlarged: Math.sqrt(cell.count / count)});
-        }
-        return list;
-    }
+    // Cells that the camera may see and of which points are there.
+    visible(camera) { return this.cells.filter(cell => cell.loaded > 0 && inSight(cell, camera)); }
 }
 
-// 0: out of sight. As shaders/proxy/splat_cull.comp.
-function visibleShare(cell, camera, pointsPerPixel)
+// As shaders/proxy/splat_cull.comp.
+function inSight(cell, camera)
 {
     const half = scale(cell.size, 0.5), middle = sub(add(cell.low, half), camera.eye);
     const m = rotate(camera.r, middle), {fx, fy, cx, cy, width, height} = camera;
     const e = [0, 1, 2].map(i => row(camera.r, i).reduce((s, x, k) => s + Math.abs(x) * half[k], 0));
     const outside = plane => dot(plane, m) + dot(plane.map(Math.abs), e) < 0;
-    if (m[2] + e[2] <= 0 || outside([fx, 0, cx]) || outside([-fx, 0, width - cx]) ||
-        outside([0, fy, cy]) || outside([0, -fy, height - cy]))
-        return 0;
-    if (!(pointsPerPixel > 0))
-        return 1;
-    let facing = Math.abs(dot(cell.normal, middle)) / Math.max(length(middle), 1e-30);
-    facing = Math.min(Math.max(facing + 1 - length(cell.normal), 0.1), 1);
-    const pixel = Math.max(m[2] - e[2], 0) / Math.min(fx, fy);
-    return Math.min(pointsPerPixel / Math.max(cell.density * pixel * pixel / facing, 1e-30), 1);
+    return m[2] + e[2] > 0 && !outside([fx, 0, cx]) && !outside([-fx, 0, width - cx]) &&
+           !outside([0, fy, cy]) && !outside([0, -fy, height - cy]);
 }

@@ -5,7 +5,6 @@ import {PhotoStore} from "./photos.js";
 import {coarseLevel, Soft} from "./soft.js";
 
 const TILE = 16;           // pixels that share a list of photographs
-const POINTS_PER_PIXEL = 4; // more are thinned
 const BORDER_PX = 2;      // over which photographs fade out at their borders
 const OWN_PLACE = 0.1;     // of the scene's distance, around a photograph's place
 const LEVELS_MAX = 9;     // of the surfel pyramid
@@ -210,8 +209,8 @@ export class Renderer {
     splat(camera, options)
     {
         const gl = this.device.gl, f = this.frame;
-        const lists = this.clouds.map(cloud => ({cloud, list: cloud.visible(camera, POINTS_PER_PIXEL)}));
-        this.drawn = lists.reduce((sum, {list}) => list.reduce((part, {count}) => part + count, sum), 0);
+        const lists = this.clouds.map(cloud => ({cloud, list: cloud.visible(camera)}));
+        this.drawn = lists.reduce((sum, {list}) => list.reduce((part, cell) => part + cell.loaded, sum), 0);
         const common = {...this.values, rotation: camera.r, size: [camera.width, camera.height],
                         cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]};
         gl.enable(gl.DEPTH_TEST);
@@ -234,13 +233,15 @@ export class Renderer {
         program.use(common);
         for (const {cloud, list} of lists) {
             gl.bindVertexArray(cloud.vertices);
-            for (const {cell, count, enlarged} of list) {
+            for (const cell of list) {
                 program.set(places("cell_low"), sub(cell.low, this.camera.eye));
                 program.set(places("cell_size"), cell.size);
                 if (places("cell_radius"))
-                    program.set(places("cell_radius"), [cell.radiusLow * radiusScale * enlarged,
-                                                        cell.radiusOctaves]);
-                gl.drawArrays(gl.POINTS, cell.base, count);
+                    // Points that are there stand for those that are still loading.
+                    program.set(places("cell_radius"),
+                                [cell.radiusLow * radiusScale * Math.sqrt(cell.count / cell.loaded),
+                                 cell.radiusOctaves]);
+                gl.drawArrays(gl.POINTS, cell.base, cell.loaded);
             }
         }
     }

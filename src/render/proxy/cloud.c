@@ -1,4 +1,4 @@
-// The point cloud on the device, in Morton order and in blocks that can be skipped or thinned.
+// The point cloud on the device, in Morton order and in blocks that can be skipped.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,11 +13,9 @@ enum {
     // would cost a resolve pass each.
     CHUNK_POINTS = 16 << 20,
     BLOCK = ORL_BLOCK_POINTS,
-    PARTS = BLOCK / ORL_ITEM_POINTS,
 };
 
-// A chunk in host memory. Points are stored part by part: the first parts of all blocks, then the
-// second parts, and so on. When blocks are thinned, the points that are read are contiguous.
+// A chunk in host memory.
 struct host_chunk {
     uint32_t (*points)[2];
     float (*blocks)[ORL_BLOCK_VEC4S][4];
@@ -49,9 +47,7 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
          &chunk->point_texels},
         {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
          &chunk->block_texels},
-        {"point block enlargement", blocks * 4, NULL, &chunk->enlarged, GL_R32F,
-         &chunk->enlarged_texels},
-        {"point list", blocks * PARTS * 4, NULL, &chunk->items, GL_R32UI, &chunk->item_texels},
+        {"point list", blocks * 4, NULL, &chunk->list, GL_R32UI, &chunk->list_texels},
         {"point list arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
     };
     enum orl_result result = ORL_OK;
@@ -69,22 +65,14 @@ static enum orl_result make_colors(struct orl_gpu *gpu, struct point_chunk *chun
     return make_buffer(gpu, &row);
 }
 
-// Where point i of a block is stored in its chunk.
-static size_t place_in_chunk(size_t i, size_t block, size_t block_count)
-{
-    return (i / ORL_ITEM_POINTS * block_count + block) * ORL_ITEM_POINTS + i % ORL_ITEM_POINTS;
-}
-
 // order: BLOCK entries of a block.
 static void fill_block(const struct orl_points *points, const uint32_t *order, size_t at,
                        struct host_chunk *host)
 {
     struct point_block block;
     orl_point_block_make(points, order, &block);
-    for (size_t i = 0; i < BLOCK; i++) {
-        size_t to = place_in_chunk(i, at, host->block_count);
-        memcpy(host->points[to], block.codes[i].geometry, sizeof block.codes[i].geometry);
-    }
+    for (size_t i = 0; i < BLOCK; i++)
+        memcpy(host->points[at * BLOCK + i], block.codes[i].geometry, sizeof block.codes[i].geometry);
     memcpy(host->blocks[at], block.texels, sizeof block.texels);
 }
 
@@ -112,19 +100,17 @@ static enum orl_result upload_colors(struct orl_gpu *gpu, const struct orl_point
     uint8_t (*colors)[3] = orl_array(orl_gpu_log(gpu), count, sizeof *colors);
     if (!colors)
         return ORL_ERR_MEMORY;
-    for (size_t i = 0; i < count; i++) {
-        size_t to = place_in_chunk(i % BLOCK, i / BLOCK, (size_t)chunk->block_count);
+    for (size_t i = 0; i < count; i++)
         if (order[i] != UINT32_MAX)
-            memcpy(colors[to], points->color[order[i]], sizeof *colors);
-    }
+            memcpy(colors[i], points->color[order[i]], sizeof *colors);
     enum orl_result result = make_colors(gpu, chunk, colors);
     free(colors);
     return result;
 }
 
-// The order along the points' own cube.
-static enum orl_result find_order(const struct orl_log *log, const struct orl_points *points,
-                                  uint32_t **order, size_t *count)
+// Along the points' own cube.
+enum orl_result orl_cloud_order(const struct orl_log *log, const struct orl_points *points, uint32_t **order,
+                                size_t *count)
 {
     struct point_cube cube;
     *order = NULL;
@@ -138,29 +124,6 @@ size_t orl_cloud_chunk_points(const struct orl_gpu *gpu)
     return most < CHUNK_POINTS ? most : CHUNK_POINTS;
 }
 
-enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points *points,
-                              uint32_t **map, size_t *count)
-{
-    const struct orl_log *log = orl_gpu_log(gpu);
-    size_t most = orl_cloud_chunk_points(gpu);
-    uint32_t *order = NULL;
-    *map = NULL;
-    enum orl_result result = find_order(log, points, &order, count);
-    if (result == ORL_OK)
-        *map = orl_array(log, *count, sizeof **map);
-    if (!*map || !order) {
-        free(order);
-        return result == ORL_OK ? ORL_ERR_MEMORY : result;
-    }
-    for (size_t i = 0; i < *count; i++) {
-        size_t first = i / most * most, here = *count - first < most ? *count - first : most;
-        size_t block = (i - first) / BLOCK, blocks = here / BLOCK;
-        (*map)[first + place_in_chunk(i % BLOCK, block, blocks)] = order[i];
-    }
-    free(order);
-    return ORL_OK;
-}
-
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud)
 {
@@ -171,7 +134,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     size_t most = orl_cloud_chunk_points(gpu);
     uint32_t *order = NULL;
     size_t count = 0;
-    enum orl_result result = find_order(log, points, &order, &count);
+    enum orl_result result = orl_cloud_order(log, points, &order, &count);
     if (result == ORL_OK) {
         cloud->chunks = orl_array(log, count / most + 1, sizeof *cloud->chunks);
         result = cloud->chunks ? ORL_OK : ORL_ERR_MEMORY;
@@ -197,7 +160,7 @@ enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
     size_t count = 0;
     if (cloud->chunks[cloud->chunk_count - 1].color_texels)
         return ORL_OK;
-    enum orl_result result = find_order(orl_gpu_log(gpu), cloud->points, &order, &count);
+    enum orl_result result = orl_cloud_order(orl_gpu_log(gpu), cloud->points, &order, &count);
     for (size_t i = 0; result == ORL_OK && i < cloud->chunk_count; i++) {
         struct point_chunk *chunk = &cloud->chunks[i];
         if (!chunk->color_texels) // the memory may have ended before
@@ -226,9 +189,8 @@ void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         struct point_chunk *c = &cloud->chunks[i];
         struct orl_tex **const views[] = {&c->point_texels, &c->color_texels, &c->block_texels,
-                                          &c->enlarged_texels, &c->item_texels, &c->arg_texels};
-        struct orl_buf **const bufs[] = {&c->points, &c->colors, &c->blocks, &c->enlarged,
-                                         &c->items, &c->args};
+                                          &c->list_texels, &c->arg_texels};
+        struct orl_buf **const bufs[] = {&c->points, &c->colors, &c->blocks, &c->list, &c->args};
         for (size_t k = 0; k < ORL_COUNT(views); k++)
             orl_tex_destroy(gpu, views[k]);
         for (size_t k = 0; k < ORL_COUNT(bufs); k++)
@@ -249,8 +211,7 @@ void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
         struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/splat_cull.comp", NULL, NULL),
                                  .params = block, .params_size = sizeof *block,
-                                 .bufs = {{.buf = chunk->args}, {.buf = chunk->items},
-                                          {.buf = chunk->enlarged}},
+                                 .bufs = {{.buf = chunk->args}, {.buf = chunk->list}},
                                  .images = {{chunk->block_texels, 0, GL_READ_ONLY}},
                                  .groups = {orl_groups((size_t)chunk->block_count,
                                                        ORL_POINT_GROUP)},

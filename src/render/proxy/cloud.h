@@ -8,12 +8,11 @@
 // A part of the points, small enough that no buffer exceeds the device's limits. It consists of
 // blocks of ORL_BLOCK_POINTS points that are close together. Each buffer has a view as texels.
 struct point_chunk {
-    struct orl_buf *points, *colors, *blocks, *enlarged, *items, *args;
+    struct orl_buf *points, *colors, *blocks, *list, *args;
     struct orl_tex *point_texels; // RG32UI: struct point_code's geometry
     struct orl_tex *color_texels; // R8UI, three for each point; NULL until they are asked for
     struct orl_tex *block_texels; // RGBA32F, ORL_BLOCK_VEC4S per block: see there
-    // Results of the last cull: floats, then 32-bit words.
-    struct orl_tex *enlarged_texels, *item_texels, *arg_texels;
+    struct orl_tex *list_texels, *arg_texels; // R32UI: blocks that are drawn, and how many, of the last cull
     int first, count, block_count;    // count: includes the padding to whole blocks
 };
 
@@ -37,11 +36,11 @@ enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
 // How many points a chunk may have on this device: whole blocks.
 size_t orl_cloud_chunk_points(const struct orl_gpu *gpu);
-// Finds which point of `points` each point on the device is: (*map)[i], owned by the caller (free),
-// for index i of the splat index texture; UINT32_MAX: padding.
-enum orl_result orl_cloud_map(const struct orl_gpu *gpu, const struct orl_points *points,
-                              uint32_t **map, size_t *count) ORL_CHECK_RESULT;
-// Lists the points to draw of each chunk. The counts and the first index in `block` are
+// Which point of `points` each point on the device is, by the index that the splat index texture has; UINT32_MAX:
+// padding. *order is owned by the caller (free).
+enum orl_result orl_cloud_order(const struct orl_log *log, const struct orl_points *points, uint32_t **order,
+                                size_t *count) ORL_CHECK_RESULT;
+// Lists the blocks to draw of each chunk. The counts and the first index in `block` are
 // overwritten.
 void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block);
 

@@ -10,13 +10,13 @@
 enum {
     NOWHERE = -1,
     PAGE_POINTS = ORL_LOD_BLOCKS * ORL_BLOCK_POINTS,
-    // Of a page, and the lists of what is drawn of it (cloud.c).
-    PAGE_BYTES = sizeof(struct orl_lod_data) + ORL_LOD_BLOCKS * 4 * (ORL_LOD_PARTS + 1),
+    // Of a page, and the list of what is drawn of it (cloud.c).
+    PAGE_BYTES = sizeof(struct orl_lod_data) + ORL_LOD_BLOCKS * 4,
     LEAST_SLOTS = 16,
 };
-// Blocks of one page differ in density. A page is fine enough when it has this many times as many
-// points as are asked for.
-static const float margin = 2;
+// A page is fine enough with so many points in a pixel: twice as many as make a surface, since blocks of one page
+// differ in density.
+static const float enough = 8;
 // A page around the viewer, or of unknown density, is never fine enough.
 static const float endless = 1e30f;
 
@@ -168,7 +168,7 @@ static struct candidate pop(struct cloud_pages *p)
 }
 
 // Replaces the neediest page by its visible children as long as there is room for them.
-static void find_cut(struct cloud_pages *p, const struct orl_view *view, float points_per_pixel)
+static void find_cut(struct cloud_pages *p, const struct orl_view *view)
 {
     const struct orl_lod *lod = p->lod;
     struct candidate c = {.page = lod->page_count - 1};
@@ -179,7 +179,7 @@ static void find_cut(struct cloud_pages *p, const struct orl_view *view, float p
         size_t first, count, visible = 0;
         struct candidate children[ORL_LOD_CHILDREN];
         c = pop(p);
-        bool fine = points_per_pixel > 0 && c.need * points_per_pixel * margin <= 1;
+        bool fine = c.need * enough <= 1;
         orl_lod_children(lod, c.page, &first, &count);
         for (size_t i = 0; !fine && i < count; i++) {
             children[visible].page = first + i;
@@ -202,16 +202,10 @@ static void list_blocks(const struct point_chunk *chunk, size_t at, const struct
     orl_buf_write(chunk->blocks, at * sizeof none, sizeof none, slot->drawn ? slot->blocks : none);
 }
 
-// Points are stored part by part in the chunk as in the page.
 static void upload(const struct cloud_pages *p, const struct point_chunk *chunk, size_t at)
 {
-    for (size_t part = 0; part < ORL_LOD_PARTS; part++) {
-        size_t item = part * (size_t)chunk->block_count + at * ORL_LOD_BLOCKS;
-        orl_buf_write(chunk->points, item * sizeof p->data->geometry[0][0],
-                      sizeof p->data->geometry[part], p->data->geometry[part]);
-        orl_buf_write(chunk->colors, item * sizeof p->data->colors[0][0],
-                      sizeof p->data->colors[part], p->data->colors[part]);
-    }
+    orl_buf_write(chunk->points, at * sizeof p->data->geometry, sizeof p->data->geometry, p->data->geometry);
+    orl_buf_write(chunk->colors, at * sizeof p->data->colors, sizeof p->data->colors, p->data->colors);
 }
 
 // The slot that was not used for longest. There is one, since a cut has no more pages than slots.
@@ -243,13 +237,12 @@ static enum orl_result load(struct cloud_pages *p, const struct point_chunk *chu
     return ORL_OK;
 }
 
-enum orl_result orl_cloud_pages_choose(const struct cloud *cloud, const struct orl_view *view,
-                                       float points_per_pixel)
+enum orl_result orl_cloud_pages_choose(const struct cloud *cloud, const struct orl_view *view)
 {
     struct cloud_pages *p = cloud->pages;
     const struct point_chunk *chunk = &cloud->chunks[0];
     enum orl_result result = ORL_OK;
-    find_cut(p, view, points_per_pixel);
+    find_cut(p, view);
     p->choice++;
     for (size_t i = 0; i < p->cut_count; i++)
         if (p->slot_of[p->cut[i]] != NOWHERE)

@@ -10,10 +10,9 @@
 enum orl_result orl_cloud_pages_init(struct orl_gpu *gpu, const struct orl_lod *lod,
                                      size_t max_bytes, struct cloud *cloud) ORL_CHECK_RESULT;
 void orl_cloud_pages_finish(struct cloud_pages **pages);
-// Chooses the coarsest pages that have points_per_pixel points in each pixel of the view (0: the
-// finest), or coarser ones where there is no room, and brings those to the device that are not
-// there. No point is drawn of any other page.
-enum orl_result orl_cloud_pages_choose(const struct cloud *cloud, const struct orl_view *view,
-                                       float points_per_pixel) ORL_CHECK_RESULT;
+// Chooses the coarsest pages that have enough points in each pixel of the view, or coarser ones where there
+// is no room, and brings those to the device that are not there. No point is drawn of any other page.
+enum orl_result orl_cloud_pages_choose(const struct cloud *cloud,
+                                       const struct orl_view *view) ORL_CHECK_RESULT;
 
 #endif

@@ -24,7 +24,7 @@ enum orl_result orl_importance_create(struct orl_gpu *gpu, const struct orl_scen
         return ORL_ERR_MEMORY;
     c->gpu = gpu;
     enum orl_result result = orl_proxy_create(gpu, scene, &orl_proxy_splats, 0, &c->proxy);
-    ORL_THEN(result, orl_cloud_map(gpu, &scene->points, &c->points, &c->count));
+    ORL_THEN(result, orl_cloud_order(orl_gpu_log(gpu), &scene->points, &c->points, &c->count));
     if (result != ORL_OK)
         orl_importance_destroy(out);
     return result;
@@ -65,7 +65,6 @@ enum orl_result orl_importance_draw(struct orl_importance *c, const struct orl_v
     const struct orl_camera *camera = &view->camera;
     struct orl_render_params params = orl_methods[0].params;
     struct surface surface;
-    params.every_point = true;
     size_t count = (size_t)camera->width * (size_t)camera->height;
     *nearest = (struct orl_nearest_points){camera->width, camera->height, NULL, NULL};
     nearest->point = orl_array(log, count, sizeof *nearest->point);

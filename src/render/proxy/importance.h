@@ -16,7 +16,7 @@ struct orl_nearest_points {
     uint32_t *point; // owned: index in scene->points; UINT32_MAX: none
     float *depth;    // owned: z of that point; INFINITY: none
 };
-// Splats all points into the view, without thinning. Of points at the same depth one wins.
+// Splats all points into the view. Of points at the same depth one wins.
 enum orl_result orl_importance_draw(struct orl_importance *importance,
                                     const struct orl_view *view,
                                     struct orl_nearest_points *nearest) ORL_CHECK_RESULT;

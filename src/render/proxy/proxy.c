@@ -106,7 +106,7 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
     enum orl_result result = proxy->kind->resize(gpu, proxy->state, view->camera.width,
                                                  view->camera.height, target);
     if (result == ORL_OK && proxy->kind->bring)
-        result = proxy->kind->bring(proxy->state, view, params);
+        result = proxy->kind->bring(proxy->state, view);
     if (result == ORL_OK)
         proxy->kind->draw(gpu, proxy->state, view, params, normals, *target, surface);
     return result;

@@ -33,8 +33,7 @@ struct orl_proxy_kind {
     // Bytes that a target of this size takes.
     size_t (*target_bytes)(const void *state, int width, int height);
     // Brings the data that `view` shows to the device. NULL: it is there.
-    enum orl_result (*bring)(const void *state, const struct orl_view *view,
-                             const struct orl_render_params *params);
+    enum orl_result (*bring)(const void *state, const struct orl_view *view);
     // Draws the surface that `view` sees. The textures of `surface` belong to the target. Without
     // `normals` the normal is left unchanged, which saves a tenth of a software renderer's time.
     void (*draw)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,

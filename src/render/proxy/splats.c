@@ -150,12 +150,6 @@ static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width,
     return result;
 }
 
-// Where more fall into a pixel, splats are thinned and enlarged. 0: all are drawn.
-static float points_per_pixel(const struct orl_render_params *params)
-{
-    return params->every_point ? 0 : 4;
-}
-
 // params: NULL if nothing is drawn.
 static struct splat_block splat_params(const struct cloud *cloud, const struct orl_view *view,
                                        const struct orl_render_params *params)
@@ -165,7 +159,6 @@ static struct splat_block splat_params(const struct cloud *cloud, const struct o
     if (params) {
         block.splat_scale = params->splat_scale;
         block.front_layer = params->front_layer;
-        block.points_per_pixel = points_per_pixel(params);
     }
     orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view->camera, block.focal);
@@ -190,7 +183,7 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
                                      .params_size = sizeof *block,
                                      .textures = {chunk->block_texels},
                                      .images = {{chunk->point_texels, 0, GL_READ_ONLY},
-                                                {chunk->item_texels, 0, GL_READ_ONLY},
+                                                {chunk->list_texels, 0, GL_READ_ONLY},
                                                 {chunk->arg_texels, 0, GL_READ_ONLY},
                                                 {t->splat_depth, 0, GL_READ_WRITE},
                                                 {t->splat_index, 0, GL_READ_WRITE},
@@ -214,15 +207,13 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         block->point_count = chunk->count;
         block->first_point = chunk->first;
         struct orl_dispatch d = {.prog = prog, .params = block, .params_size = sizeof *block,
-                                 .bufs = {[2] = {.buf = chunk->enlarged}},
                                  .textures = {chunk->block_texels},
                                  .images = {{chunk->point_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},
                                             {t->splat_layer, 0, GL_READ_ONLY},
                                             {normals ? t->splats : depth, 0, GL_WRITE_ONLY},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
-                                            {t->surfel_b[1], 0, GL_WRITE_ONLY},
-                                            {chunk->enlarged_texels, 0, GL_READ_ONLY}},
+                                            {t->surfel_b[1], 0, GL_WRITE_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         if (chunks)
             d.images[6] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
@@ -310,11 +301,10 @@ static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int min_
         drop_outliers(gpu, &block, min_support, t);
 }
 
-static enum orl_result bring(const void *state, const struct orl_view *view,
-                             const struct orl_render_params *params)
+static enum orl_result bring(const void *state, const struct orl_view *view)
 {
     const struct cloud *cloud = state;
-    return cloud->pages ? orl_cloud_pages_choose(cloud, view, points_per_pixel(params)) : ORL_OK;
+    return cloud->pages ? orl_cloud_pages_choose(cloud, view) : ORL_OK;
 }
 
 static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
