@@ -334,7 +334,8 @@ export class Renderer {
     {
         const f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
-                        normals: this.normals, points_only: pointsOnly};
+                        normals: this.normals, points_only: pointsOnly,
+                        loading: this.photos.ready.length < this.photos.slots};
         this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, false);
         this.device.makeLevels(f.guesses);
         this.device.pass(this.programs.compose, f.composed,
