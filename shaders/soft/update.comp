@@ -20,7 +20,7 @@ const float FORGET_1 = 0.9, FORGET_2 = 0.99;
 // Step sizes. Places move by parts of the size that a photograph's pixel has there; sizes stay between
 // SIGMA_MIN and SIGMA_MAX of it.
 const float STEP_PLACE = 0.25, STEP_SIGMA = 0.08, STEP_TURN = 0.02, STEP_OPACITY = 0.05, STEP_COLOR = 0.06;
-const float SIGMA_MIN = 0.05, SIGMA_MAX = 8.0;
+const float SIGMA_MIN = 0.05, SIGMA_MAX = 16.0;
 
 void main()
 {
