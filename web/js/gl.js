@@ -82,7 +82,9 @@ export class Device {
         else
             gl.texStorage2D(kind, levels, gl[format], width, height);
         gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, filter);
-        gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, levels > 1 ? gl.LINEAR_MIPMAP_NEAREST : filter);
+        // Photographs, in layers, are read at one level, as in the renderer.
+        const mipmapped = layers ? gl.LINEAR_MIPMAP_NEAREST : gl.LINEAR_MIPMAP_LINEAR;
+        gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, levels > 1 ? mipmapped : filter);
         gl.texParameteri(kind, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
         gl.texParameteri(kind, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         const bytes = BYTES[format] * width * height * Math.max(layers, 1) * (levels > 1 ? 4 / 3 : 1);
