@@ -27,8 +27,8 @@ enum { CHECKED = 6, CHECKS_MIN = 3, CHECKS_MAX = 8 };
 // Steps for each photograph, and the fewest and the most for all photographs together, unless a number is asked for.
 enum { STEPS_OF_PHOTO = 20, STEPS_MIN = 200, STEPS_MAX = 1200 };
 static const double FIRST_PART = 2.0 / 3, LAST_FIRST_SIZE = 0.3;
-static const float SHARES[] = {0.1f, 0.2f, 0.3f, 0.5f, 0.75f, 1};
-static const size_t MIX_SHARES = 4; // so many of them are tried for opt.soft_mix
+static const float SHARES[] = {0.1f, 0.3f, 0.5f, 0.75f, 1};
+static const size_t MIX_SHARES = 3; // so many of them are tried for opt.soft_mix
 static const double GAIN_DB = 0.05; // that splats must bring, or else none are taken
 // Pixels of a photograph for each splat within it, hidden or not. Half as many splats lose 0.2 dB on photographs that
 // they have not seen, and twice as many gain nothing in the mean.
