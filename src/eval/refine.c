@@ -37,7 +37,7 @@ enum { PLACES_TRIED = 1000 }; // so many tell in how many photographs a place is
 static const double OPEN = 0.5, FAR_SHARE = 0.98, SIGMA = 0.9; // SIGMA: of the grid's spacing
 static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 // Entries in the lists of a view's tiles that device memory is planned for: so many for a splat and for a pixel.
-// More are needed where every photograph shows the whole subject (docs/how/oriel.md).
+// Where every photograph shows the whole subject, three quarters of them are needed (docs/how/oriel.md).
 enum { SPLAT_ENTRIES = 5, PIXEL_ENTRIES = 12, SPLATS_MIN = 1000 };
 static const double KEEP_EVERY = 20; // the state is kept so many times as long apart as keeping it takes
 

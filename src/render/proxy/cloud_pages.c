@@ -114,7 +114,7 @@ static bool outside(const float middle[3], const float extent[3], float x, float
 }
 
 // How many pixels each of the page's points would have to cover at its nearest depth. False: the
-// page is outside the picture. As shaders/proxy/splat_cull.comp does for blocks.
+// page is outside the picture, which shaders/proxy/splat_cull.comp finds likewise for blocks.
 static bool find_need(const struct orl_view *view, const struct orl_lod_page *page, float *need)
 {
     const struct orl_camera *c = &view->camera;
