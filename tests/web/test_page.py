@@ -186,6 +186,21 @@ class Page(unittest.TestCase):
         self.browser.capture(points, camera, 5)
         self.assertGreaterEqual(psnr(points, f"{SCENE}/images/{camera['name']}"), 14)
 
+    def test_unseen_surfaces_have_the_points_colours_until_all_is_loaded(self):
+        camera = dict(self.cameras[0])
+        r, eye, far = camera["r"], camera["eye"], 2 * self.manifest["distance"]
+        # From the other side, where photographs do not show all that is seen.
+        camera["eye"] = [x + far * forward for x, forward in zip(eye, r[6:])]
+        camera["r"] = [-x for x in r[:3]] + r[3:6] + [-x for x in r[6:]]
+        whole, loading = self.file("whole.png"), self.file("loading.png")
+        self.browser.capture(whole, camera)
+        self.browser.js("oriel.picture.renderer.photos.slots += 1")
+        try:
+            self.browser.capture(loading, camera)
+        finally:
+            self.browser.js("oriel.picture.renderer.photos.slots -= 1")
+        self.assertLess(psnr(whole, loading), 50) # where they always have them or never, the two are the same
+
     def test_layers_differ(self):
         seen = set()
         for layer in range(6): # the points come last
