@@ -28,11 +28,19 @@ static void close_or_single_exposures_are_not(void **state)
     assert_false(bracketed((double[]){0, 0, 0, 0, 5, 5}, (int[]){0, 0, 0, 0, 1, 1}, 6, true));
 }
 
+// As a camera takes them that meters each photograph by itself.
+static void one_series_of_varied_exposures_is_not(void **state)
+{
+    (void)state;
+    assert_false(bracketed((double[]){-1.4, -0.7, 0, 0.7, -1.4, 0.7}, (int[]){0, 0, 0, 0, 0, 0}, 6, false));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_series_are),
         cmocka_unit_test(close_or_single_exposures_are_not),
+        cmocka_unit_test(one_series_of_varied_exposures_is_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
