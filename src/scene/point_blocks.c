@@ -13,9 +13,7 @@ enum {
     SORT_BITS = 11, // bits per radix pass
     SORT_RANGE = 1 << SORT_BITS,
     BOUNDS_SAMPLES = 4096,
-    SPLITS = 16,          // one in so many blocks may be split for precision
-    DENSITY_SAMPLES = 16, // points of a block whose neighbours are measured
-    NEIGHBOUR = 4,
+    SPLITS = 16, // one in so many blocks may be split for precision
 };
 
 struct key {
@@ -46,8 +44,7 @@ enum orl_result orl_point_cube_find(const struct orl_log *log, const struct orl_
         cube->low[k] = 0.5 * (a + b);
         cube->side = fmax(cube->side, 2 * (b - a) + 1e-6 * fabs(a + b));
     }
-    // The cube is off-centre: its middle plane would split a flat cloud into two layers, each of
-    // half the density.
+    // The cube is off-centre: its middle plane would split a flat cloud into two layers.
     for (int k = 0; k < 3; k++)
         cube->low[k] -= 0.437 * cube->side;
     free(values);
@@ -188,40 +185,8 @@ enum orl_result orl_point_order(const struct orl_log *log, const struct orl_poin
 
 // --- blocks ---
 
-// Points per unit of area, from the distances of a few points to their fourth neighbour in the
-// block: a disc of that radius holds four points. Distances are measured within the tangent plane
-// of the point, since depth noise does not make a surface larger. 0: unknown.
-static float density(float (*const p)[3], const struct orl_points *points,
-                     const uint32_t *order, size_t count)
-{
-    float distances[DENSITY_SAMPLES] = {0};
-    size_t samples = count < DENSITY_SAMPLES ? count : DENSITY_SAMPLES;
-    if (count <= NEIGHBOUR)
-        return 0;
-    for (size_t s = 0; s < samples; s++) {
-        float nearest[NEIGHBOUR] = {INFINITY, INFINITY, INFINITY, INFINITY};
-        const float *n = points->normal[order[s]];
-        for (size_t i = 0; i < count; i++) {
-            float x = p[i][0] - p[s][0], y = p[i][1] - p[s][1], z = p[i][2] - p[s][2];
-            float along = x * n[0] + y * n[1] + z * n[2];
-            float d2 = x * x + y * y + z * z - along * along;
-            if (i == s || !(d2 < nearest[NEIGHBOUR - 1]))
-                continue;
-            int at = NEIGHBOUR - 1;
-            for (; at > 0 && d2 < nearest[at - 1]; at--)
-                nearest[at] = nearest[at - 1];
-            nearest[at] = d2;
-        }
-        distances[s] = nearest[NEIGHBOUR - 1];
-    }
-    qsort(distances, samples, sizeof *distances, orl_order_floats);
-    float d2 = distances[samples / 2];
-    return d2 > 1e-30f ? NEIGHBOUR / (3.14159265f * d2) : 0;
-}
-
 // Writes the texels of a block, which shaders/proxy/splat_cull.comp explains.
-static void describe_block(float (*const positions)[3], const struct orl_points *points,
-                           const uint32_t *order, size_t count, const struct point_frame *frame,
+static void describe_block(float (*const positions)[3], size_t count, const struct point_frame *frame,
                            float block[ORL_BLOCK_VEC4S][4])
 {
     for (int k = 0; k < 3; k++) {
@@ -235,7 +200,7 @@ static void describe_block(float (*const positions)[3], const struct orl_points 
         block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
         block[2][k] = frame->origin[k];
     }
-    block[0][3] = density(positions, points, order, count);
+    block[0][3] = 0;
     block[1][3] = (float)count;
     block[2][3] = frame->step;
 }
@@ -258,5 +223,5 @@ void orl_point_block_make(const struct orl_points *points, const uint32_t *order
                                            points->color[from], points->radius[from]);
         orl_point_decode_position(&frame, block->codes[i].geometry, positions[i]);
     }
-    describe_block(positions, points, order, count, &frame, block->texels);
+    describe_block(positions, count, &frame, block->texels);
 }

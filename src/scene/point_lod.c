@@ -96,7 +96,7 @@ static enum orl_result read_table(struct orl_lod *lod, const struct lod_header *
         result = bad(lod, "its number of points is not that of its pages");
     for (size_t i = 0; result == ORL_OK && i < lod->page_count; i++) {
         const struct orl_lod_page *page = &lod->pages[i];
-        bool sound = page->density >= 0 && isfinite(page->density);
+        bool sound = page->radius >= 0 && isfinite(page->radius);
         for (int k = 0; k < 3; k++)
             sound = sound && isfinite(page->middle[k]) && page->extent[k] >= 0 &&
                     isfinite(page->extent[k]);

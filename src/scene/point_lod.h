@@ -31,7 +31,7 @@ struct orl_lod_data {
 // What is known of a page without reading it.
 struct orl_lod_page {
     float middle[3], extent[3]; // of its bounds, world: centre and half size
-    float density;              // points per unit of area; 0: unknown
+    float radius;               // of its points, root of the mean square
     uint32_t count;             // points
     uint64_t hash;              // of the page; XXH3
 };

@@ -8,7 +8,7 @@
 #include "scene/point_blocks.h"
 #include "scene/point_lod.h"
 
-#define LOD_MAGIC "ORLLOD4\n"
+#define LOD_MAGIC "ORLLOD5\n"
 enum { LOD_PAGES_AT = 4096 };
 
 struct lod_header {

@@ -85,15 +85,21 @@ void orl_lod_levels_destroy(struct lod_levels **levels)
 
 // --- pages ---
 
-// Bounds, number and density of a page's points, from what its blocks say.
+static struct point_frame frame_of(const float block[ORL_BLOCK_VEC4S][4])
+{
+    return (struct point_frame){{block[2][0], block[2][1], block[2][2]}, block[2][3]};
+}
+
+// Bounds, number and mean size of a page's points.
 static struct orl_lod_page describe_page(const struct orl_lod_data *page)
 {
     struct orl_lod_page entry = {0};
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    double area = 0, measured = 0;
+    double squares = 0; // of radii
     for (size_t b = 0; b < ORL_LOD_BLOCKS; b++) {
         const float(*block)[4] = page->blocks[b];
-        float count = block[1][3], density = block[0][3];
+        float count = block[1][3];
+        const struct point_frame frame = frame_of(block);
         if (!(count > 0))
             continue;
         entry.count += (uint32_t)count;
@@ -101,18 +107,15 @@ static struct orl_lod_page describe_page(const struct orl_lod_data *page)
             low[k] = fminf(low[k], block[0][k] - block[1][k]);
             high[k] = fmaxf(high[k], block[0][k] + block[1][k]);
         }
-        if (density > 0) {
-            measured += (double)count;
-            area += (double)(count / density);
-        }
+        for (size_t i = 0; i < (size_t)count; i++)
+            squares += pow((double)orl_point_decode_radius(&frame, page->geometry[b][i]), 2);
     }
     for (int k = 0; entry.count && k < 3; k++) {
         entry.middle[k] = 0.5f * low[k] + 0.5f * high[k];
         // Measured from the rounded middle, so that no block lies outside.
         entry.extent[k] = fmaxf(high[k] - entry.middle[k], entry.middle[k] - low[k]);
     }
-    double density = area > 0 ? measured / area : 0;
-    entry.density = density < 1e30 ? (float)density : 0;
+    entry.radius = entry.count ? (float)sqrt(squares / entry.count) : 0;
     return entry;
 }
 
@@ -149,8 +152,7 @@ static void put_block(const struct point_block *block, struct level *level)
 static void take_point(const struct point_block *child, int i, struct orl_points *taken)
 {
     float count = child->texels[1][3], drawn = fminf(count, TAKEN);
-    const struct point_frame frame = {
-        {child->texels[2][0], child->texels[2][1], child->texels[2][2]}, child->texels[2][3]};
+    const struct point_frame frame = frame_of(child->texels);
     const struct point_code *code = &child->codes[i];
     size_t to = taken->count;
     if ((float)i >= count ||

@@ -14,10 +14,9 @@ enum {
     PAGE_BYTES = sizeof(struct orl_lod_data) + ORL_LOD_BLOCKS * 4,
     LEAST_SLOTS = 16,
 };
-// A page is fine enough with so many points in a pixel: twice as many as make a surface, since blocks of one page
-// differ in density.
-static const float enough = 8;
-// A page around the viewer, or of unknown density, is never fine enough.
+// A page is fine enough when its points' radius spans so many pixels: some seven points lie in a pixel then.
+static const float enough = 0.5f;
+// A page around the viewer is never fine enough.
 static const float endless = 1e30f;
 
 struct slot {
@@ -29,7 +28,7 @@ struct slot {
 
 struct candidate {
     size_t page;
-    float need; // pixels that a point would have to cover
+    float need; // pixels that a point's radius spans
 };
 
 struct cloud_pages {
@@ -113,8 +112,8 @@ static bool outside(const float middle[3], const float extent[3], float x, float
                fabsf(y) * extent[1] + fabsf(z) * extent[2] < 0;
 }
 
-// How many pixels each of the page's points would have to cover at its nearest depth. False: the
-// page is outside the picture, which shaders/proxy/splat_cull.comp finds likewise for blocks.
+// How many pixels the radius of the page's points spans at its nearest depth. False: the page is outside
+// the picture, which shaders/proxy/splat_cull.comp finds likewise for blocks.
 static bool find_need(const struct orl_view *view, const struct orl_lod_page *page, float *need)
 {
     const struct orl_camera *c = &view->camera;
@@ -139,8 +138,7 @@ static bool find_need(const struct orl_view *view, const struct orl_lod_page *pa
         outside(middle, extent, 0, -fy, (float)c->height - cy))
         return false;
     float pixel = fmaxf(middle[2] - extent[2], 0) / fminf(fx, fy);
-    float per_pixel = page->density * pixel * pixel;
-    *need = per_pixel * endless > 1 ? 1 / per_pixel : endless;
+    *need = pixel * endless > page->radius ? page->radius / pixel : endless;
     return true;
 }
 
@@ -179,7 +177,7 @@ static void find_cut(struct cloud_pages *p, const struct orl_view *view)
         size_t first, count, visible = 0;
         struct candidate children[ORL_LOD_CHILDREN];
         c = pop(p);
-        bool fine = c.need * enough <= 1;
+        bool fine = c.need <= enough;
         orl_lod_children(lod, c.page, &first, &count);
         for (size_t i = 0; !fine && i < count; i++) {
             children[visible].page = first + i;
