@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "preprocess/expose/align.h"
+#include "preprocess/expose/bracketing.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"
@@ -418,15 +419,41 @@ static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, 
     return ORL_OK;
 }
 
-// Light of a training photograph at the scene's exposure, log2.
+// Light of a training photograph with this gain, log2.
 static enum orl_result meter_photo(const struct exposing *e, const struct photo *photo,
-                                   double *light)
+                                   const float gain[3], double *light)
 {
     char *path = orl_job_path(e->job, "images/%s", photo->source->name);
     ORL_TRY_MEMORY(path);
-    enum orl_result result = orl_photo_metered(e->job->log, path, &photo->view.camera, photo->gain,
+    enum orl_result result = orl_photo_metered(e->job->log, path, &photo->view.camera, gain,
                                                photo->vignette, light);
     free(path);
+    return result;
+}
+
+// Photographs whose exposures the camera chose by itself are one series. Merged as a bracket is, they give no
+// wider range of light, and a worse picture.
+static enum orl_result join_metered(struct exposing *e)
+{
+    static const float as_it_is[3] = {1, 1, 1};
+    const struct orl_log *log = e->job->log;
+    if (e->series_count < 2)
+        return ORL_OK;
+    double *ev = orl_array(log, e->train, sizeof *ev);
+    double *light = orl_array(log, e->train, sizeof *light);
+    enum orl_result result = ev && light ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
+        ev[i] = e->exposures[i].ev;
+        result = meter_photo(e, &e->photos[i], as_it_is, &light[i]);
+    }
+    if (result == ORL_OK && orl_exposures_are_metered(ev, light, e->train)) {
+        orl_logf(log, ORL_LOG_INFO, "expose: the camera chose the exposures by itself: they are no bracket");
+        e->series_count = 1;
+        for (size_t i = 0; i < e->count; i++)
+            e->exposures[i].series = 0;
+    }
+    free(ev);
+    free(light);
     return result;
 }
 
@@ -448,7 +475,7 @@ static enum orl_result guess_held_out(struct exposing *e)
         memcpy(views[i].gain, e->photos[i].gain, sizeof views[i].gain);
         orl_pose_centre(&e->photos[i].view.cam_from_world, views[i].eye);
         if (i < e->train)
-            result = meter_photo(e, &e->photos[i], &views[i].light);
+            result = meter_photo(e, &e->photos[i], e->photos[i].gain, &views[i].light);
     }
     if (result == ORL_OK) {
         enum orl_gain_guess guess = orl_gains_guess(views, e->train, views + e->train,
@@ -510,7 +537,8 @@ enum orl_result orl_stage_expose(struct orl_job *job, json_t *record)
     enum orl_result result = e.response_list ? find_photos(&e) : ORL_ERR_MEMORY;
     if (result != ORL_OK || (result = set_exposures(&e)) != ORL_OK ||
         (result = take_samples(&e)) != ORL_OK || (result = fit_all(&e)) != ORL_OK ||
-        (result = estimate_exposures(&e)) != ORL_OK || (result = guess_held_out(&e)) != ORL_OK)
+        (result = estimate_exposures(&e)) != ORL_OK || (result = join_metered(&e)) != ORL_OK ||
+        (result = guess_held_out(&e)) != ORL_OK)
         goto end;
     write_record(&e);
     orl_progress_report(job->progress, "expose", 1, 1, NULL);

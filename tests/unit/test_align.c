@@ -4,6 +4,7 @@
 
 #include "core/color.h"
 #include "preprocess/expose/align.h"
+#include "preprocess/expose/bracketing.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/job/exposure_list.h"
 #include "preprocess/expose/metered.h"
@@ -465,6 +466,16 @@ static void samples_show_what_photographs_have_in_common(void **state)
 }
 
 // The light before the lens, which its borders darken.
+// Pictures of three exposures, of a bright and of a dark half of the place: a bracket, whose bright parts clip,
+// and what a camera takes that meters by itself.
+static void metered_exposures_are_no_bracket(void **state)
+{
+    (void)state;
+    const double ev[6] = {-2, 0, 2, -2, 0, 2};
+    assert_false(orl_exposures_are_metered(ev, (double[]){-3, -2, -1, -5, -4, -2.5}, 6));
+    assert_true(orl_exposures_are_metered(ev, (double[]){-2.3, -2, -2.1, -2, -2.2, -1.9}, 6));
+}
+
 static void light_is_metered_without_vignetting(void **state)
 {
     (void)state;
@@ -645,6 +656,7 @@ int main(void)
         cmocka_unit_test(response_of_srgb_is_srgb),
         cmocka_unit_test(response_stays_srgb_without_reason),
         cmocka_unit_test(samples_show_what_photographs_have_in_common),
+        cmocka_unit_test(metered_exposures_are_no_bracket),
         cmocka_unit_test(light_is_metered_without_vignetting),
         cmocka_unit_test(guesses_follow_what_predicts),
         cmocka_unit_test(guesses_follow_automatic_exposure),
