@@ -320,7 +320,8 @@ page_airieau() {
     cat <<'END'
 
 Method `airieau`: held-out photographs, whole pictures; and views at the places of the training photographs, all
-photographs in use, against these, over covered pixels: the paper says that such a view is the photograph.
+photographs in use, against these, over covered pixels: the paper says that such a view is the photograph. Where that is
+not so (*least* of sacre and sceaux), leaves or people stand before the photographer, and are left out on purpose.
 END
     command_block "$eval" "$own"
     print_table "$work/airieau.json" '
