@@ -1,6 +1,7 @@
 #!/bin/bash
 # EXIF that tells one exposure of photographs that differ by stops, as that of copies may: it is said, and exposures are
-# estimated from the pictures. With a list of the true ones nothing is amiss.
+# estimated from the pictures. With a list of the true ones nothing is amiss. Exposures
+# that the pictures do not show are no bracket.
 . "$2/tests/e2e/prepare_lib"
 monument 320x240 9 --exposures -1.5,0,1.5
 
@@ -48,4 +49,16 @@ done >"$work/list"
 run 0 "${prepare[@]}" --resume --exposures "$work/list"
 grep -qF "$lies" "$work/err" && fail "a list that fits the pictures is taken for wrong"
 evs list
+# series COUNT: of the photographs, by scene.json.
+series() {
+    jq -e --argjson count "$1" '.stages.expose.series == $count and ([.photographs[].series] | unique | length) == $count' \
+        "$work/s/scene.json" >"$work/jq" || fail "not $1 series: $(jq -c '[.photographs[].series]' "$work/s/scene.json")"
+}
+series 3
+
+# Pictures of more exposure that are not brighter, as where a camera meters by itself, are no bracket.
+sed -i 's/,-1.5$/,x/; s/,1.5$/,-1.5/; s/,0$/,1.5/; s/,x$/,0/' "$work/list"
+run 0 "${prepare[@]}" --resume --exposures "$work/list"
+says "the camera chose the exposures by itself"
+series 1
 finish
