@@ -121,11 +121,11 @@ enum orl_result orl_scene_training_views(const struct orl_log *log, const struct
                                          struct orl_view **views, size_t *count) ORL_CHECK_RESULT;
 // How many points the scene has, though `points` may be a sample of them.
 size_t orl_scene_point_count(const struct orl_scene *scene);
-// Index of the photograph of this name (with or without extension), -1 if there is none.
 // Were the photographs taken at several exposures on purpose? True where the mean exposures of two
 // series are at least a stop and a half apart, and each has at least two, and a tenth, of all photographs
 // that are not held out. Within one series a camera that meters by itself may vary more than that.
 bool orl_scene_is_bracketed(const struct orl_scene *scene);
+// Index of the photograph of this name (with or without extension), -1 if there is none.
 int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
 // Selects the photographs and silhouettes of `frame`, or with -1 those of the scene itself. Cameras
 // and everything else stay. On failure the scene is unchanged.

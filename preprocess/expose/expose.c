@@ -7,7 +7,6 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "preprocess/expose/align.h"
-#include "preprocess/expose/bracketing.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"

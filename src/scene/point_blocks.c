@@ -205,6 +205,11 @@ static void describe_block(float (*const positions)[3], size_t count, const stru
     block[2][3] = frame->step;
 }
 
+struct point_frame orl_point_block_frame(const float texels[ORL_BLOCK_VEC4S][4])
+{
+    return (struct point_frame){{texels[2][0], texels[2][1], texels[2][2]}, texels[2][3]};
+}
+
 void orl_point_block_make(const struct orl_points *points, const uint32_t *order,
                           struct point_block *block)
 {

@@ -39,6 +39,8 @@ struct point_block {
     struct point_code codes[ORL_BLOCK_POINTS];
     float texels[ORL_BLOCK_VEC4S][4];
 };
+// The frame of a block's codes.
+struct point_frame orl_point_block_frame(const float texels[ORL_BLOCK_VEC4S][4]);
 // order: ORL_BLOCK_POINTS entries of a block.
 void orl_point_block_make(const struct orl_points *points, const uint32_t *order,
                           struct point_block *block);

@@ -191,8 +191,7 @@ int orl_lod_children(const struct orl_lod *lod, size_t page, size_t *first, size
 
 static void take_block(const struct orl_lod_data *data, size_t b, struct orl_points *points)
 {
-    const float *corner = data->blocks[b][2];
-    const struct point_frame frame = {{corner[0], corner[1], corner[2]}, corner[3]};
+    const struct point_frame frame = orl_point_block_frame(data->blocks[b]);
     for (size_t i = 0; i < (size_t)data->blocks[b][1][3]; i++) {
         const size_t to = points->count;
         const uint32_t *geometry = data->geometry[b][i];

@@ -85,11 +85,6 @@ void orl_lod_levels_destroy(struct lod_levels **levels)
 
 // --- pages ---
 
-static struct point_frame frame_of(const float block[ORL_BLOCK_VEC4S][4])
-{
-    return (struct point_frame){{block[2][0], block[2][1], block[2][2]}, block[2][3]};
-}
-
 // Bounds, number and mean size of a page's points.
 static struct orl_lod_page describe_page(const struct orl_lod_data *page)
 {
@@ -99,7 +94,7 @@ static struct orl_lod_page describe_page(const struct orl_lod_data *page)
     for (size_t b = 0; b < ORL_LOD_BLOCKS; b++) {
         const float(*block)[4] = page->blocks[b];
         float count = block[1][3];
-        const struct point_frame frame = frame_of(block);
+        const struct point_frame frame = orl_point_block_frame(block);
         if (!(count > 0))
             continue;
         entry.count += (uint32_t)count;
@@ -152,7 +147,7 @@ static void put_block(const struct point_block *block, struct level *level)
 static void take_point(const struct point_block *child, int i, struct orl_points *taken)
 {
     float count = child->texels[1][3], drawn = fminf(count, TAKEN);
-    const struct point_frame frame = frame_of(child->texels);
+    const struct point_frame frame = orl_point_block_frame(child->texels);
     const struct point_code *code = &child->codes[i];
     size_t to = taken->count;
     if ((float)i >= count ||

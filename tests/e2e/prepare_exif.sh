@@ -1,7 +1,7 @@
 #!/bin/bash
 # EXIF that tells one exposure of photographs that differ by stops, as that of copies may: it is said, and exposures are
-# estimated from the pictures. With a list of the true ones nothing is amiss. Exposures
-# that the pictures do not show are no bracket.
+# estimated from the pictures. With a list of the true ones nothing is amiss.
+# Exposures that the pictures do not show are no bracket.
 . "$2/tests/e2e/prepare_lib"
 monument 320x240 9 --exposures -1.5,0,1.5
 

@@ -4,7 +4,6 @@
 
 #include "core/color.h"
 #include "preprocess/expose/align.h"
-#include "preprocess/expose/bracketing.h"
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/job/exposure_list.h"
 #include "preprocess/expose/metered.h"
@@ -465,7 +464,6 @@ static void samples_show_what_photographs_have_in_common(void **state)
     free(path);
 }
 
-// The light before the lens, which its borders darken.
 // Pictures of three exposures, of a bright and of a dark half of the place: a bracket, whose bright parts clip,
 // and what a camera takes that meters by itself.
 static void metered_exposures_are_no_bracket(void **state)
@@ -476,6 +474,7 @@ static void metered_exposures_are_no_bracket(void **state)
     assert_true(orl_exposures_are_metered(ev, (double[]){-2.3, -2, -2.1, -2, -2.2, -1.9}, 6));
 }
 
+// The light before the lens, which its borders darken.
 static void light_is_metered_without_vignetting(void **state)
 {
     (void)state;
