@@ -10,7 +10,7 @@ import report
 from report import FIGURES, Failure, fixed, mean, spread
 
 # What trades accuracy for speed where a method chooses a few photographs for each pixel.
-SETTINGS = ["photos_per_pixel=1", "photos_per_pixel=2", "photos_per_pixel=3", "candidates=2",
+SETTINGS = ["photos_per_pixel=1", "photos_per_pixel=2", "photos_per_pixel=4", "candidates=2",
             "candidates=3", "candidates=4", "candidates=8", "sampling=bilinear"]
 RENDERERS = {"photographs at 1/2": ["--photo-divide", 2], "photographs at 1/4": ["--photo-divide", 4],
              "textures ycc": ["--textures", "ycc"],

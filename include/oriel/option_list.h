@@ -56,7 +56,7 @@
         "neighbours of surfaces that no photograph painted (`holes`).") \
     NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
-    NUMBER(photos_per_pixel, 4, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
+    NUMBER(photos_per_pixel, 3, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
         "The most photographs that are blended into a pixel.") \
     NUMBER(candidates, 6, 1, 8, "photographs", "paint=tiled", ORL_NO_TRIES, \
         "How many photographs of its tile a pixel asks. Fewer are faster, and miss more " \

@@ -102,7 +102,6 @@ ORL_BLOCK(gather_block)
     IVEC2(view_size);    // pixels
     INT(photo_count);    // photographs of this dispatch
     INT(tiles_across);   // tiles in each row of the view
-    INT(kept);           // opt.photos_per_pixel, rounded to a whole number
     INT(asked);          // opt.candidates, rounded to a whole number
     FLOAT(last_mip);     // largest mip level
     FLOAT(border_px);    // pixels of the photographs as stored on the device; 0: they do not fade

@@ -8,6 +8,7 @@
 #include "oriel/hdr.h"
 #include "io/exr.h"
 #include "io/picture.h"
+#include "shared/render_blocks.h"
 
 static struct orl_gpu *gpu;
 
@@ -267,16 +268,15 @@ static void several_that_clip_outvote_a_dark_one(void **state)
     }
 }
 
-// Only one of them may count, and neither is better.
+// As many as are kept, and none is better: the limit is what each of them weighs.
 static void photographs_that_tie_paint(void **state)
 {
     (void)state;
     struct fixture f;
     setup_wall(&f);
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < ORL_RADIANCE_KEPT; i++)
         add_photo(&f, look(0.2, 0), 0, wall_light);
     struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
-    params.render.photos_per_pixel = 1;
     struct orl_frame frame = draw(&f, &params);
     assert_color(&frame, MIDDLE, WALL, 0.01);
     assert_true(frame.confidence.f32[MIDDLE] > 0.5f);
@@ -291,19 +291,18 @@ static void brighter_light(const struct orl_view *view, int x, int y, float ligh
         light[c] = 1.25f * WALL[c];
 }
 
-// The best photograph alone counts, less what the next one would weigh.
-static void the_best_few_leave_the_others_out(void **state)
+// The last photograph that is kept has faded out: the next one to take its place makes no step.
+static void the_least_of_the_best_few_counts_nothing(void **state)
 {
     (void)state;
     struct fixture f;
     setup_wall(&f);
-    add_photo(&f, look(0.2, 0), 0, wall_light);
+    for (int i = 1; i < ORL_RADIANCE_KEPT; i++)
+        add_photo(&f, look(0.2, 0), 0, wall_light);
     add_photo(&f, look(0.3, 0), 0, brighter_light);
-    add_photo(&f, look(0.6, 0), 0, brighter_light);
     struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
-    params.render.photos_per_pixel = 1;
     struct orl_frame frame = draw(&f, &params);
-    assert_color(&frame, MIDDLE, WALL, 0.02);
+    assert_color(&frame, MIDDLE, WALL, 0.01);
     orl_frame_finish(&frame);
     teardown(&f);
 }
@@ -788,7 +787,7 @@ int main(void)
         cmocka_unit_test(what_clips_takes_nothing_from_shade),
         cmocka_unit_test(several_that_clip_outvote_a_dark_one),
         cmocka_unit_test(photographs_that_tie_paint),
-        cmocka_unit_test(the_best_few_leave_the_others_out),
+        cmocka_unit_test(the_least_of_the_best_few_counts_nothing),
         cmocka_unit_test(what_clips_in_part_counts_less),
         cmocka_unit_test(weights_are_in_units_of_the_distance),
         cmocka_unit_test(confidence_is_that_of_the_noise),

@@ -2,7 +2,7 @@
 // geometric weight times its confidence, so that at every pixel better samples outweigh clipped and
 // noisy ones. Each pixel asks the photographs of its tile, which radiance/choose.comp has listed,
 // and keeps the samples of greatest weight.
-// LIMITED: blends at most opt.photos_per_pixel samples, for methods of the best few photographs.
+// LIMITED: weights fall to zero at the first sample left out, for methods of the best few photographs.
 #include "gather/radiance/samples.glsl"
 #ifdef LIMITED
 #include "gather/penalty.glsl"
@@ -124,18 +124,14 @@ vec3 median_color()
     return median;
 }
 
-// Largest weight that is left out by a method of the best few photographs.
+// The weight at which a method of the best few photographs leaves a sample out: the least of those kept.
 float left_out()
 {
 #ifdef LIMITED
-    float limit = 0.0;
-    EACH_SAMPLE(k) {
-        int above = 0;
-        EACH_SAMPLE(j)
-            above += int(weights[j] > weights[k] || (weights[j] == weights[k] && j < k));
-        limit = above == kept ? weights[k] : limit;
-    }
-    return limit;
+    float least = weights[0];
+    EACH_SAMPLE(k)
+        least = min(least, weights[k]);
+    return least;
 #else
     return 0.0;
 #endif

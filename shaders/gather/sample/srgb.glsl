@@ -40,9 +40,11 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
     return vec4(photo_filtered(source, pixel, mip).rgb, 1.0);
 }
 
-// How many of a pixel's photographs are read with the filter that is asked for. They have most of the weight.
-// The others are read with one fetch.
-const int SHARP = 2;
+// SHARP: how many of a pixel's photographs are read with the filter that is asked for. They have most of the
+// weight. The others are read with one fetch.
+#ifndef SHARP
+#define SHARP 2
+#endif
 
 // The sample of the k-th best photograph, from 0, and w of photo_texel.
 vec4 photo_ranked(photo source, int k, vec2 pixel, float mip)

@@ -127,7 +127,7 @@ static void copy_options(const struct orl_render_params *params, struct render_o
 
 int orl_tile_side(const struct frame *frame)
 {
-    return orl_frame_footprint(frame) < 1.5 ? 16 : 8;
+    return orl_frame_is_coarse(frame) ? 8 : 16;
 }
 
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count)
@@ -152,7 +152,6 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
         .photo_count = (int)count,
         .tile_side = orl_tile_side(frame),
         .tiles_across = (int)orl_groups((size_t)frame->view->camera.width, orl_tile_side(frame)),
-        .kept = (int)(params->photos_per_pixel + 0.5f),
         .asked = (int)(params->candidates + 0.5f),
         .last_mip = (float)(color->levels - 1),
         .border_px = fades ? BORDER_PX / (float)photos->divide : 0,

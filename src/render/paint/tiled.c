@@ -28,13 +28,15 @@ static const char *rest_define(const struct frame *frame)
 }
 
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
-static void gather_tiles(const struct frame *frame, int kept, struct orl_dispatch d)
+static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
 {
     char defines[64];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
-    // The number of photographs per pixel is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%sKEPT %d", rest_define(frame), frame->soft ? "SOFT 1\n" : "", kept);
+    // The numbers of photographs are part of the program, so that none is sampled in vain.
+    snprintf(defines, sizeof defines, "%s%sKEPT %d\nSHARP %d", rest_define(frame),
+             frame->soft ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f),
+             orl_frame_is_coarse(frame) ? 1 : 2);
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
@@ -82,7 +84,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     orl_pass_end(frame->gpu);
     if (orl_guess_applies(frame))
         orl_guess_depth(frame, &d, &block);
-    gather_tiles(frame, block.kept, d);
+    gather_tiles(frame, d);
     return ORL_OK;
 }
 
