@@ -2,6 +2,7 @@
 // the surfaces around the pixel, but no farther than the ground (the floor of Li's room box, its
 // only reliable side). One invocation handles 2x2 pixels.
 #define BLOCK_IMAGE
+#include "shared/constants.h"
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;

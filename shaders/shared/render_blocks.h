@@ -148,9 +148,6 @@ ORL_BLOCK(holes_block)
 
 // Image-space hole filling and the final composition.
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
-// The farthest estimate of background depth, as a multiple of a typical depth of the scene.
-#define ORL_GUESS_FARTHEST 1000.0
-
 ORL_BLOCK(image_block)
 {
     IVEC2(image_size);  // of the written level, pixels

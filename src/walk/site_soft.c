@@ -6,20 +6,20 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "render/paint/soft_layer.h"
+#include "shared/constants.h"
 #include "soft/soft_ply.h"
 #include "walk/internal.h"
 
 // As web/shaders/soft.vert reads it. What lies beyond the range of a fraction becomes its end.
 struct record {
     float place[3];
-    uint16_t sigma[3];   // logarithms of the standard deviations, from -SIGMA_LOG to SIGMA_LOG
+    uint16_t sigma[3];   // logarithms of the standard deviations, up to ORL_SOFT_SIGMA_LOG
     uint8_t opacity;
     uint8_t pixel;       // its logarithm, within the range of all splats
     int8_t turn[4];      // unit quaternion
-    int8_t color[4];     // coefficients, of up to COLOR_MOST; 0
+    int8_t color[4];     // coefficients, of up to ORL_SOFT_COLOR_MOST; 0
 };
 _Static_assert(sizeof(struct record) == 28, "the page's layout");
-static const double SIGMA_LOG = 20, COLOR_MOST = 2.5;
 
 // Of the sizes of a photograph's pixel that are known.
 struct range {
@@ -50,13 +50,13 @@ static struct record pack(const float s[ORL_SOFT_VALUES], const struct range *pi
     memcpy(r.place, s + ORL_SOFT_PLACE, sizeof r.place);
     r.pixel = (uint8_t)fraction(octave / fmax(pixels->octaves, 1e-12), 0, 255);
     for (int k = 0; k < 3; k++)
-        r.sigma[k] = (uint16_t)fraction((double)s[ORL_SOFT_SIGMA + k] / (2 * SIGMA_LOG) + 0.5, 0, UINT16_MAX);
+        r.sigma[k] = (uint16_t)fraction((double)s[ORL_SOFT_SIGMA + k] / (2 * ORL_SOFT_SIGMA_LOG) + 0.5, 0, UINT16_MAX);
     for (int k = 0; k < 4; k++)
         length = hypot(length, (double)s[ORL_SOFT_TURN + k]);
     for (int k = 0; k < 4; k++)
         r.turn[k] = (int8_t)fraction((double)s[ORL_SOFT_TURN + k] / length, -1, 127);
     for (int k = 0; k < 3; k++)
-        r.color[k] = (int8_t)fraction((double)s[ORL_SOFT_COLOR + k] / COLOR_MOST, -1, 127);
+        r.color[k] = (int8_t)fraction((double)s[ORL_SOFT_COLOR + k] / ORL_SOFT_COLOR_MOST, -1, 127);
     return r;
 }
 

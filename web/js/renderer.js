@@ -5,12 +5,8 @@ import {PhotoStore} from "./photos.js";
 import {coarseLevel, Soft} from "./soft.js";
 
 const TILE = 16;           // pixels that share a list of photographs
-const BORDER_PX = 2;      // over which photographs fade out at their borders
 const OWN_PLACE = 0.1;     // of the scene's distance, around a photograph's place
 const LEVELS_MAX = 9;     // of the surfel pyramid
-const CELLS_MIN = 64;      // in which depths are tried, along the longer side of the picture
-const GUESS_FARTHEST = 1000; // of the scene's distance
-const GROUND_REACH = 20;   // farther than so many heights, what stands on the ground hides it
 export const LAYERS = ["color", "depth", "normal", "coverage", "source", "points"];
 export const TONES = ["srgb", "reinhard", "filmic"]; // as show.frag numbers them
 const POINTS_LAYER = LAYERS.indexOf("points");
@@ -44,21 +40,25 @@ function makePrograms(device, sources, manifest, planes)
     };
 }
 
+// The numbers of shaders/shared/constants.h, by name.
+const constants = sources => Object.fromEntries(
+    [...sources["shared/constants.h"].matchAll(/^#define (\w+) ([\d.]+)/gm)].map(found => [found[1], Number(found[2])]));
 const half = side => (side + 1) >> 1;
 const costTexels = planes => Math.ceil(planes / 4); // of a cell
 
-// Pixels of a cell's side, as src/render/paint/guess.c has it.
-function cellSide(width, height)
+// Pixels of a cell's side, as src/render/paint/guess.c has it. cells: along the longer side, at least
+function cellSide(width, height, cells)
 {
     let side = 2;
-    while (2 * CELLS_MIN * side <= Math.max(width, height))
+    while (2 * cells * side <= Math.max(width, height))
         side *= 2;
     return side;
 }
 
 // Everything that depends on the frame's size.
 class Frame {
-    constructor(device, width, height, planes)
+    // cells: of guesses, as cellSide has it
+    constructor(device, width, height, planes, cells)
     {
         this.device = device;
         this.width = width;
@@ -87,7 +87,7 @@ class Frame {
         this.fillColor = this.pyramid(make);
         this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
         if (planes > 1) {
-            this.cell = cellSide(width, height);
+            this.cell = cellSide(width, height, cells);
             const across = Math.ceil(width / this.cell), down = Math.ceil(height / this.cell);
             this.costs = make(across * costTexels(planes), down, ["RGBA32F"]);
             this.picked = make(across, down, ["R32F"]);
@@ -147,6 +147,7 @@ export class Renderer {
         this.manifest = manifest;
         this.clouds = [cloud]; // and what moves, where something does
         this.planes = manifest.radiance ? 0 : Math.round(manifest.options.guess_depths);
+        this.shared = constants(sources);
         this.programs = makePrograms(device, sources, manifest, this.planes);
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
                                      manifest.radiance);
@@ -164,7 +165,7 @@ export class Renderer {
             return;
         if (this.frame)
             this.frame.release();
-        this.frame = new Frame(this.device, width, height, this.planes);
+        this.frame = new Frame(this.device, width, height, this.planes, this.shared.ORL_GUESS_CELLS);
     }
 
     // Everything but showing it. `layer`: one of LAYERS; whole: as show() has it
@@ -175,7 +176,8 @@ export class Renderer {
         this.camera = camera;
         this.values = {view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
                        front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
-                       near: this.manifest.near || 0, min_inverse: 1 / (GUESS_FARTHEST * this.manifest.distance),
+                       near: this.manifest.near || 0,
+                       min_inverse: 1 / (this.shared.ORL_GUESS_FARTHEST * this.manifest.distance),
                        ground: this.groundAlongRays(camera)};
         this.splat(camera, o);
         this.pullPush();
@@ -203,7 +205,7 @@ export class Renderer {
         const normal = ground.plane.slice(0, 3), height = dot(normal, camera.eye) + ground.plane[3];
         if (!(height > 0))
             return [0, 0, 0, 0];
-        return [...scale(rotate(camera.r, normal), -1 / height), 1 / (GROUND_REACH * ground.height)];
+        return [...scale(rotate(camera.r, normal), -1 / height), 1 / (this.shared.ORL_GROUND_REACH * ground.height)];
     }
 
     splat(camera, options)
@@ -302,7 +304,7 @@ export class Renderer {
         const f = this.frame, store = this.photos, photos = store.describe(camera, this.values.typical);
         const values = {...this.values, photo_rows: store.rows, photo_color: store.color,
                         photo_depth: store.depth, slot_size: [store.width, store.height],
-                        last_mip: store.levels - 1, border_px: BORDER_PX, photos: photos.length,
+                        last_mip: store.levels - 1, border_px: this.shared.ORL_BORDER_PX, photos: photos.length,
                         blur_per_radian: o.guess_blur, away: this.awayFromPhotos(camera.eye),
                         candidates: Math.round(o.candidates), outlier_severity: o.outliers > 0 ? 1 / (o.outliers * o.outliers) : 0,
                         photos_per_pixel: Math.round(o.photos_per_pixel),
@@ -347,7 +349,8 @@ export class Renderer {
     correct(camera, o, photos)
     {
         const f = this.frame, {blended, differs, mixed} = f.soft;
-        const values = {mean_level: coarseLevel(camera, photos), correct_share: o.soft, mix_share: o.soft_mix,
+        const values = {mean_level: coarseLevel(camera, photos, this.shared.ORL_SOFT_COARSE),
+                        correct_share: o.soft, mix_share: o.soft_mix,
                         blended: blended.textures[0], differs: differs.textures[0], source: f.painted.textures[1],
                         composed: f.composed.textures[0], depth: this.depth.textures[0]};
         this.soft.draw(this.programs.soft(), blended, camera);

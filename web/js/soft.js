@@ -5,12 +5,12 @@ import {dot} from "./math.js";
 const BYTES = 28, WORDS = BYTES / 4; // of a splat, as src/walk/site_soft.c packs it
 const SPLATS_MAX = 2 ** 24;          // a double holds a number below it beside 29 bits of a depth
 const NEAR = 1e-3;                   // as shaders/soft/seen.glsl
-const COARSE = 80;                   // as src/render/paint/soft_layer.c
 
-// The mip level of a view that is as coarse as the coarse part of photographs, in the mean.
-export function coarseLevel(camera, photos)
+// The mip level of a view that is as coarse as the coarse part of photographs, a mean over 1 / `parts` of their
+// longer sides, on average.
+export function coarseLevel(camera, photos, parts)
 {
-    const share = photos.reduce((sum, p) => sum + Math.max(p.width, p.height) / COARSE / p.fx, 0) / photos.length;
+    const share = photos.reduce((sum, p) => sum + Math.max(p.width, p.height) / parts / p.fx, 0) / photos.length;
     return Math.max(Math.log2(share * camera.fx), 0);
 }
 

@@ -4,10 +4,8 @@
 #include <string.h>
 
 #include "scene/ground_plane.h"
+#include "shared/constants.h"
 #include "shared/interop.h"
-
-// Beyond this many times the height of the photographs, objects on the ground occlude it.
-static const double GROUND_REACH = 20;
 
 void orl_pixel_groups(int width, int height, unsigned groups[3])
 {
@@ -80,7 +78,7 @@ void orl_frame_ground(const struct frame *frame, float out[4])
         return;
     for (int k = 0; k < 3; k++)
         out[k] = (float)inverse[k];
-    out[3] = (float)(1 / (GROUND_REACH * ground->height));
+    out[3] = (float)(1 / (ORL_GROUND_REACH * ground->height));
 }
 
 void orl_set_pose(const struct orl_pose *pose, float rotation[3][4], float eye[4])

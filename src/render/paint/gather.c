@@ -9,13 +9,10 @@
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
+#include "shared/constants.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");
 _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
-
-// By the weight `lumigraph` photographs fade out over so many of their pixels at their borders, where others
-// show the same.
-static const float BORDER_PX = 2;
 
 // --- parameters of the shaders ---
 
@@ -154,7 +151,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
         .tiles_across = (int)orl_groups((size_t)frame->view->camera.width, orl_tile_side(frame)),
         .asked = (int)(params->candidates + 0.5f),
         .last_mip = (float)(color->levels - 1),
-        .border_px = fades ? BORDER_PX / (float)photos->divide : 0,
+        .border_px = fades ? (float)ORL_BORDER_PX / (float)photos->divide : 0,
         .outlier_severity = params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
         .blur_per_radian = orl_frame_guesses(frame) ? params->guess_blur : 0,
         .model_variance = (float)(photos->sensor.model * photos->sensor.model),

@@ -3,10 +3,10 @@
 #include <stdio.h>
 
 #include "render/paint/paint.h"
+#include "shared/constants.h"
 
 enum {
     COSTS = 3, SUMS = 4, // storage bindings of shaders/guess
-    CELLS_MIN = 64,      // along the longer side of the picture
 };
 
 static int plane_count(const struct frame *frame)
@@ -19,7 +19,7 @@ static int cell_side(const struct frame *frame)
 {
     const struct orl_camera *camera = &frame->view->camera;
     int longer = camera->width > camera->height ? camera->width : camera->height, side = 2;
-    while (2 * CELLS_MIN * side <= longer)
+    while (2 * ORL_GUESS_CELLS * side <= longer)
         side *= 2;
     return side;
 }

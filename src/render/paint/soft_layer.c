@@ -3,11 +3,8 @@
 #include <math.h>
 
 #include "render/photos/photos.h"
+#include "shared/constants.h"
 #include "soft/soft_ply.h"
-
-// The coarse part of a difference is its mean over a photograph's longer side over this: colours of splats are
-// less exact than those of photographs, their structure is more so where a surface is wrong.
-static const double COARSE = 80;
 
 bool orl_soft_layer_shows(const struct frame *frame)
 {
@@ -35,7 +32,7 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
 
 static double coarse_pixels(const struct orl_camera *camera)
 {
-    return fmax(camera->width, camera->height) / COARSE;
+    return fmax(camera->width, camera->height) / ORL_SOFT_COARSE;
 }
 
 // --- in photographs ---

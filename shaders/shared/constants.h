@@ -1,0 +1,22 @@
+// Numbers that the renderer and the published page share: read by C, by shaders, and by web/js/renderer.js, which takes
+// them from this text.
+#ifndef ORL_CONSTANTS_H
+#define ORL_CONSTANTS_H
+
+// Pixels over which photographs fade out at their borders, by the weight `lumigraph`.
+#define ORL_BORDER_PX 2.0
+// Ground farther than so many of the photographs' heights above it is ignored: what stands on it hides it.
+#define ORL_GROUND_REACH 20.0
+// The farthest estimate of background depth, as a multiple of a typical depth of the scene.
+#define ORL_GUESS_FARTHEST 1000.0
+// Cells in which estimated depths are tried, along the longer side of the picture, at least.
+#define ORL_GUESS_CELLS 64
+// The coarse part of what soft splats correct is a mean over this part of a photograph's longer side: colours of
+// splats are less exact than those of photographs, their structure is more so where a surface is wrong.
+#define ORL_SOFT_COARSE 80.0
+// Of soft splats as they are published: the greatest logarithm of a standard deviation, and the greatest
+// coefficient of a colour.
+#define ORL_SOFT_SIGMA_LOG 20.0
+#define ORL_SOFT_COLOR_MOST 2.5
+
+#endif
