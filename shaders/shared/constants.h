@@ -10,7 +10,7 @@
 // The farthest estimate of background depth, as a multiple of a typical depth of the scene.
 #define ORL_GUESS_FARTHEST 1000.0
 // Cells in which estimated depths are tried, along the longer side of the picture, at least.
-#define ORL_GUESS_CELLS 64
+#define ORL_GUESS_CELLS 48
 // The coarse part of what soft splats correct is a mean over this part of a photograph's longer side: colours of
 // splats are less exact than those of photographs, their structure is more so where a surface is wrong.
 #define ORL_SOFT_COARSE 80.0
