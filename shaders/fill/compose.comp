@@ -1,7 +1,8 @@
 // Makes the finished frame: the blended colour, or the filled colour where no sample was blended.
 // One invocation handles 2x2 pixels.
 // FINISHED: the painter has finished all pixels but those that are unpainted or lie on estimated
-// background depth, and has marked their work groups.
+// background depth, and has marked their work groups. One work group then handles ORL_COMPOSE_RUN of them: a
+// software renderer takes longer to start a work group than to find that it has nothing to do.
 // RADIANCE: colour on estimated depth is blurred where `trusted` asks for it.
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
@@ -48,13 +49,8 @@ vec3 softened(ivec2 at, vec3 sharp, float blur)
 }
 #endif
 
-void main()
+void compose(ivec2 parent)
 {
-#ifdef FINISHED
-    if (unfinished_groups[unfinished_group()] == 0u)
-        return;
-#endif
-    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
     if (2 * parent.x >= image_size.x || 2 * parent.y >= image_size.y)
         return;
     vec4 finer[4];
@@ -85,4 +81,22 @@ void main()
                    pixel_finished(own, on_surface && (weight > 0.0 || points_show == 1)));
 #endif
     }
+}
+
+void main()
+{
+#ifdef FINISHED
+    int across = (image_size.x + 2 * ORL_PIXEL_GROUP_X - 1) / (2 * ORL_PIXEL_GROUP_X);
+    int row = int(gl_WorkGroupID.y), first = int(gl_WorkGroupID.x) * ORL_COMPOSE_RUN;
+    uint left = 0u; // one bit for each group of the gather
+    for (int k = 0; k < ORL_COMPOSE_RUN; k++)
+        left |= first + k < across ? unfinished_groups[row * across + first + k] << k : 0u;
+    do { // the condition comes last: see gather/tiled.comp
+        int group = left != 0u ? first + findLSB(left) : across; // across: outside the picture
+        compose(ivec2(group, row) * ivec2(gl_WorkGroupSize.xy) + ivec2(gl_LocalInvocationID.xy));
+        left &= left - 1u;
+    } while (left != 0u);
+#else
+    compose(ivec2(gl_GlobalInvocationID.xy));
+#endif
 }

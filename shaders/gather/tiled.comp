@@ -115,5 +115,5 @@ void main()
     if (guess.a > 0.0) // the host has cleared the image, which costs less than stores
         imageStore(guesses, corner / 2, guess);
     if (!whole)
-        unfinished_groups[unfinished_group()] = 1u;
+        unfinished_groups[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = 1u;
 }

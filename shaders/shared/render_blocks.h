@@ -148,6 +148,8 @@ ORL_BLOCK(holes_block)
 
 // Image-space hole filling and the final composition.
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
+#define ORL_COMPOSE_RUN 8 // work groups of the gather that one of the composition finishes, at most 32
+
 ORL_BLOCK(image_block)
 {
     IVEC2(image_size);  // of the written level, pixels

@@ -48,6 +48,8 @@ static void compose(const struct frame *frame)
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
+    if (frame->finishes)
+        d.groups[0] = orl_groups(d.groups[0], ORL_COMPOSE_RUN);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 

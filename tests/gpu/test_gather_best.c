@@ -319,6 +319,26 @@ static void many_photographs_leave_the_best(void **state)
     teardown(&f);
 }
 
+// Beside the only photograph pixels are left, in many work groups of a row and none in others.
+static void what_no_photograph_shows_is_filled(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup(&f, false);
+    add_photo(&f, look(0, 0, 0), red);
+    struct orl_view view = look(0, 0, 0);
+    view.camera.width = 461;
+    view.camera.cx = 240;
+    view.camera.height = 67;
+    view.camera.cy = 16;
+    struct orl_render_params params = best();
+    struct orl_frame frame = draw(gpu, &f, view, &params, 0);
+    for (int i = 0; i < view.camera.width * view.camera.height; i++)
+        assert_float_equal(frame.color.f32[3 * i], 1, 1e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // 2x2 pixels are made at once: the last row and column of odd pictures too, and nothing beside.
 static void odd_sizes_lose_no_pixel(void **state)
 {
@@ -494,6 +514,7 @@ int main(void)
         cmocka_unit_test(the_bilinear_filter_mixes_levels),
         cmocka_unit_test(outliers_lose),
         cmocka_unit_test(many_photographs_leave_the_best),
+        cmocka_unit_test(what_no_photograph_shows_is_filled),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
         cmocka_unit_test(unseen_pixels_are_filled),
         cmocka_unit_test(guesses_end_at_the_ground),
