@@ -16,10 +16,16 @@ float share_of(ivec2 cell)
 
 void main()
 {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= view_size.x || at.y >= view_size.y)
+    ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(cell, cells_across_down())))
         return;
-    float own = imageLoad(picked, at / CELL).r, depth = imageLoad(view_depth, at).r;
-    if (depth < 0.0 && own < 1.0)
-        imageStore(view_depth, at, vec4(moved(at, depth, own)));
+    float own = imageLoad(picked, cell).r;
+    int k = 0, pixels = own < 1.0 ? CELL * CELL : 0;
+    do { // the condition comes last: see gather/tiled.comp
+        ivec2 at = CELL * cell + ivec2(k % CELL, k / CELL);
+        float depth = imageLoad(view_depth, at).r; // 0 outside
+        if (depth < 0.0 && own < 1.0)
+            imageStore(view_depth, at, vec4(moved(at, depth, own)));
+        k++;
+    } while (k < pixels);
 }

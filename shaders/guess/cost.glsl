@@ -18,12 +18,12 @@ const float DIFFER_COST = 0.3, DIFFER_MAX = 0.15;
 // Cost of leaving the estimate by FAR planes or more, and by fewer in proportion.
 const float PRIOR = 0.2, FAR = 4.0;
 
-// Mean inverse depth of the estimates in a cell; 0: there are none.
+// Mean inverse depth of the estimates at 4x4 places of a cell; 0: there are none.
 float open_estimate(ivec2 cell)
 {
     float sum = 0.0, count = 0.0;
-    for (int k = 0; k < CELL * CELL; k++) {
-        ivec2 at = CELL * cell + ivec2(k % CELL, k / CELL);
+    for (int k = 0; k < 16; k++) {
+        ivec2 at = CELL * cell + (2 * ivec2(k & 3, k >> 2) + 1) * CELL / 8;
         float z = depth_at(at);
         sum += z < 0.0 ? -1.0 / z : 0.0;
         count += z < 0.0 ? 1.0 : 0.0;

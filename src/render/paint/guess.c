@@ -122,7 +122,7 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     run(frame, "guess/cost.comp", width, height, &d);
     smooth(frame, width, height, &d);
     run(frame, "guess/pick.comp", width, height, &d);
-    run(frame, "guess/apply.comp", frame->surface.width, frame->surface.height, &d);
+    run(frame, "guess/apply.comp", width, height, &d);
     orl_gpu_dispatch(frame->gpu, choice);
     orl_pass_end(frame->gpu);
 }
