@@ -11,11 +11,11 @@
 #define ORL_GUESS_FARTHEST 1000.0
 // Cells in which estimated depths are tried, along the longer side of the picture, at least.
 #define ORL_GUESS_CELLS 48
-// The coarse part of what soft splats correct is a mean over this part of a photograph's longer side: colours of
-// splats are less exact than those of photographs, their structure is more so where a surface is wrong.
+// The coarse part of what soft splats correct is a mean over a photograph's longer side divided by this: colours
+// of splats are less exact than those of photographs, their structure is more so where a surface is wrong.
 #define ORL_SOFT_COARSE 80.0
-// Of soft splats as they are published: the greatest logarithm of a standard deviation, and the greatest
-// coefficient of a colour.
+// Of soft splats as they are published: logarithms of standard deviations lie between minus this and this, and
+// coefficients of colour are at most this.
 #define ORL_SOFT_SIGMA_LOG 20.0
 #define ORL_SOFT_COLOR_MOST 2.5
 

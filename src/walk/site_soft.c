@@ -13,7 +13,7 @@
 // As web/shaders/soft.vert reads it. What lies beyond the range of a fraction becomes its end.
 struct record {
     float place[3];
-    uint16_t sigma[3];   // logarithms of the standard deviations, up to ORL_SOFT_SIGMA_LOG
+    uint16_t sigma[3];   // logarithms of the standard deviations, as ORL_SOFT_SIGMA_LOG has them
     uint8_t opacity;
     uint8_t pixel;       // its logarithm, within the range of all splats
     int8_t turn[4];      // unit quaternion

@@ -1,6 +1,6 @@
 // A quad over each soft splat, as shaders/soft/project.comp projects them. What src/walk/site_soft.c packs:
 layout(location = 0) in vec3 place;        // world
-layout(location = 1) in vec3 sigma;        // logarithms of the standard deviations, up to ORL_SOFT_SIGMA_LOG
+layout(location = 1) in vec3 sigma;        // logarithms of the standard deviations, as ORL_SOFT_SIGMA_LOG has them
 layout(location = 2) in vec2 opacity;      // y: logarithm of the pixel that it was adjusted in, within pixel_range
 layout(location = 3) in vec4 turn;
 layout(location = 4) in vec3 harmonic;     // parts of ORL_SOFT_COLOR_MOST

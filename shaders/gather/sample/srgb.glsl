@@ -40,8 +40,8 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
     return vec4(photo_filtered(source, pixel, mip).rgb, 1.0);
 }
 
-// SHARP: how many of a pixel's photographs are read with the filter that is asked for. They have most of the
-// weight. The others are read with one fetch.
+// SHARP: how many of a pixel's photographs are read with the filter that is asked for, 2 unless the painter says.
+// They have most of the weight. The others are read with one fetch.
 #ifndef SHARP
 #define SHARP 2
 #endif
