@@ -33,9 +33,11 @@ void main()
     float estimate = open_estimate(cell);
     int row = first_cost(cell);
     imageStore(estimated, cell, vec4(estimate));
-    for (int first = 0; first < PLANES; first += AT_ONCE) {
-        vec4 some = estimate > 0.0 ? plane_costs(cell, estimate, first) : vec4(CLOSED);
+    int first = 0, end = estimate > 0.0 ? PLANES : 1; // the first cost says that a cell is closed
+    do { // the condition comes last: see gather/tiled.comp
+        vec4 some = plane_costs(cell, estimate, first);
         for (int n = 0; n < AT_ONCE && first + n < PLANES; n++)
-            costs[row + first + n] = some[n];
-    }
+            costs[row + first + n] = estimate > 0.0 ? some[n] : CLOSED;
+        first += AT_ONCE;
+    } while (first < end);
 }
