@@ -70,35 +70,39 @@ float sight_weight(ranking r, int k, spot s)
 // another surface.
 const float GUESS_SEVERITY = 4.0;
 
-// Colour, and 1 if there is a sample; samples: colour, weight; blur: for estimated depth. Samples far
-// from the consensus lose weight: pedestrians, leaves, reflections. `samples` receives the weights that
-// are left. The square roots of the weights make it a consensus of all photographs
-// rather than of the best one; the square roots of light make differences roughly perceptually uniform.
-vec4 blend(spot s, ranking r, inout vec4 samples[KEPT], out float blur)
+// What the photographs of a pixel show, best first, as photo_ranked reads it.
+struct samples {
+    vec4 shown[KEPT];
+    float weight[KEPT];
+    vec4 detail; // of the best one
+};
+
+// Colour, and 1 if there is a sample; luma: the mean of w of what is shown; blur: for estimated depth. Samples far from
+// the consensus lose weight: pedestrians, leaves, reflections. The square roots of the weights make it a consensus of
+// all photographs rather than of the best one; the square roots of light make differences roughly perceptually uniform.
+// One fetch takes about the same detail from all photographs of a surface, so the best one lends its own to the others,
+// less the farther it is from the consensus.
+vec4 blend(spot s, ranking r, samples from, out float luma, out float blur)
 {
     vec4 vote = vec4(0.0), sum = vec4(0.0);
     for (int k = 0; k < KEPT; k++)
-        vote += vec4(sqrt(samples[k].rgb), 1.0) * sqrt(samples[k].a);
+        vote += vec4(sqrt(from.shown[k].rgb), 1.0) * sqrt(from.weight[k]);
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
     vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
-    float first = samples[0].a;
     float severity = outlier_severity * (is_guess(s) ? GUESS_SEVERITY : 1.0);
+    float first = from.weight[0], kept = 0.0, total = 0.0; // of the best one's weight, the share that it keeps
     for (int k = 0; k < KEPT; k++) {
-        vec3 off = sqrt(samples[k].rgb) - mean;
-        apart += vec2(dot(off, off), 1.0) * samples[k].a;
-        samples[k].a /= 1.0 + dot(off, off) * severity;
-        sum += vec4(samples[k].rgb, 1.0) * samples[k].a;
+        vec3 off = sqrt(from.shown[k].rgb) - mean;
+        float share = 1.0 / (1.0 + dot(off, off) * severity), weight = from.weight[k] * share;
+        apart += vec2(dot(off, off), 1.0) * from.weight[k];
+        sum += from.shown[k] * weight;
+        total += weight;
+        kept = k == 0 ? share : kept;
     }
     apart.y = max(apart.y, 1e-30);
     blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
-    return sum.a > 0.0 ? sum / sum.a : vec4(0.0);
-}
-
-// The luma that soft splats show in the photographs, blended as the colours are. samples: from blend().
-float blend_luma(float shown[KEPT], vec4 samples[KEPT])
-{
-    vec2 luma = vec2(0.0);
-    for (int k = 0; k < KEPT; k++)
-        luma += vec2(shown[k], 1.0) * samples[k].a;
-    return luma.x / luma.y;
+    vec4 shown = sum + kept * from.detail * (sum - kept * first * from.shown[0]);
+    shown /= max(total, 1e-30);
+    luma = shown.a;
+    return total > 0.0 ? vec4(shown.rgb, 1.0) : vec4(0.0);
 }

@@ -31,15 +31,12 @@ float surface_penalty(float penalty)
 
 #include "gather/consider.glsl"
 
-// Samples with the k-th photograph of a ranking, and the luma that soft splats show there. Every one is read: see
-// insert.
-vec4 look(ranking r, int k, spot s, out float luma)
+// What the k-th photograph of a ranking shows. Every one is read: see insert.
+void look(ranking r, int k, spot s, inout samples to)
 {
     sight one = r.best[k];
-    vec4 color = photo_ranked(photo_at(one.index), k, one.pixel, one.mip);
-    float weight = sight_weight(r, k, s);
-    luma = color.a;
-    return weight > 0.0 ? vec4(color.rgb, weight) : vec4(0.0);
+    to.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, to.detail);
+    to.weight[k] = sight_weight(r, k, s);
 }
 
 #ifdef SOFT
@@ -77,17 +74,16 @@ void main()
             left_out = max(left_out, spots[k].p.z > 0.0 ? rankings[k].next : 0.0);
         i = left_out < NOT_SEEN ? -1 : i;
     } while (i >= 0);
-    float lumas[4]; // as `shown`, blended
+    float lumas[4];
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
-        float shown[KEPT];
-        vec4 samples[KEPT];
+        samples from;
+        from.detail = vec4(0.0);
         for (int n = 0; n < KEPT; n++)
-            samples[n] = look(rankings[k], n, spots[k], shown[n]);
-        colors[k] = blend(spots[k], rankings[k], samples, own);
-        lumas[k] = blend_luma(shown, samples);
+            look(rankings[k], n, spots[k], from);
+        colors[k] = blend(spots[k], rankings[k], from, lumas[k], own);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k];
         guess += guessed;

@@ -200,13 +200,14 @@ static void paint_line(struct fixture *f, int at, const uint8_t color[3])
     repaint_photo(f, &image);
 }
 
-// The view's pixel lies a quarter of a pixel beside a line in each of three photographs. The Catmull-Rom
-// filter gives the line more weight there than the bilinear one, with which the third is read.
-static void the_two_best_are_read_sharply(void **state)
+// The view's pixel lies a quarter of a pixel beside a line in each of three photographs. The Catmull-Rom filter, with
+// which the best one is read, gives the line more weight there than the bilinear one. The others show as much more.
+static void the_best_lends_its_detail(void **state)
 {
     (void)state;
     enum { AT = 18 };
-    const uint8_t *const colors[3] = {red, green, blue};
+    static const uint8_t white[3] = {255, 255, 255};
+    const uint8_t *const colors[3] = {white, green, blue};
     struct fixture f;
     setup(&f, false);
     double x[3], w[3], sum = 0;
@@ -218,12 +219,52 @@ static void the_two_best_are_read_sharply(void **state)
         w[i] = pow(penalty(0, x[0], AT, 26) / penalty(0, x[i], AT, 26), (double)params.sharpness);
         sum += w[i];
     }
+    const double sharp = 1 + 0.25 * 0.25 * (-2.5 + 1.5 * 0.25), shares[3] = {w[0], w[0] + w[1], w[0] + w[2]};
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
-    const float *c = color_at(&frame, AT, 26);
-    const double sharp = 1 + 0.25 * 0.25 * (-2.5 + 1.5 * 0.25), plain = 0.75;
-    for (int i = 0; i < 3; i++)
-        assert_float_equal(c[i], w[i] / sum * (i < 2 ? sharp : plain), 4e-3);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(color_at(&frame, AT, 26)[c], sharp * shares[c] / sum, 4e-3);
     orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// The last photograph becomes black left of a column and has this colour from there on.
+static void paint_edge(struct fixture *f, int from, const uint8_t color[3])
+{
+    const struct orl_camera *camera = &f->photos[f->scene.photo_count - 1].view.camera;
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, camera->width, camera->height, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < camera->width * camera->height; i++)
+        for (int c = 0; c < 3; c++)
+            image.u8[3 * i + c] = i % camera->width < from ? 0 : color[c];
+    repaint_photo(f, &image);
+}
+
+// A tenth of a pixel from the black side of an edge, the filters differ by a third of what is shown, and a quarter of it
+// is lent. A best photograph that is far from the consensus lends next to nothing.
+static void little_of_an_edge_is_lent(void **state)
+{
+    (void)state;
+    enum { AT = 18 };
+    static const uint8_t white[3] = {255, 255, 255};
+    struct fixture f;
+    setup(&f, false);
+    struct orl_view view = look(-0.01, 0, 0), beside = look(-0.4, 0, 0);
+    add_photo(&f, view, white);
+    paint_edge(&f, AT + 1, white);
+    add_photo(&f, beside, white);
+    add_photo(&f, beside, white);
+    struct orl_render_params params = best();
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    params.outliers = 0.01f;
+    struct orl_frame robust = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    const double sharp = 0.1 * (0.5 + 0.1 * (2 - 1.5 * 0.1)) + 0.01 * (-0.5 + 0.5 * 0.1);
+    const double other = 2 * pow(penalty(0, -0.01, AT, 26) / penalty(0, -0.4, AT, 26), (double)params.sharpness);
+    assert_float_equal(color_at(&frame, AT, 26)[0], (sharp + 0.75 * other) / (1 + other), 4e-3);
+    const double votes = 2 * sqrt(other / 2), mean = (sqrt(sharp) + votes) / (1 + votes);
+    const double first = 1 / (1 + 1e4 * pow(sqrt(sharp) - mean, 2)), rest = other / (1 + 1e4 * pow(1 - mean, 2));
+    assert_float_equal(color_at(&robust, AT, 26)[0], (first * sharp + rest) / (first + rest), 4e-3);
+    orl_frame_finish(&frame);
+    orl_frame_finish(&robust);
     teardown(&f);
 }
 
@@ -260,6 +301,24 @@ static void the_second_is_read_from_one_level(void **state)
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     double c = line_of_two, aligned = 0.5 * c / (1 - 0.5 * c * c * c); // see srgb.glsl
     assert_float_equal(color_at(&frame, LINE_AT, 24)[2], aligned / 2, 2e-3);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
+// Where a pixel of the view is two of the best photograph wide, that one is the mean of an area, and lends nothing.
+static void an_area_lends_nothing(void **state)
+{
+    (void)state;
+    static const uint8_t white[3] = {255, 255, 255};
+    struct fixture f;
+    setup(&f, false);
+    add_fine_photo(&f, 2);
+    struct orl_view view = f.photos[0].view;
+    add_photo(&f, view, white);
+    struct orl_render_params params = best();
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    const double mean = 1 - sqrt((2 * 2 - 1) / 12.0 - 1 / 6.0);
+    assert_float_equal(color_at(&frame, LINE_AT, 24)[2], (mean + 1) / 2, 4e-3);
     orl_frame_finish(&frame);
     teardown(&f);
 }
@@ -509,7 +568,8 @@ int main(void)
         cmocka_unit_test(what_is_small_in_a_tile_is_painted),
         cmocka_unit_test(a_tile_lists_a_photograph_that_sees_it),
         cmocka_unit_test(each_pixel_gets_its_photographs),
-        cmocka_unit_test(the_two_best_are_read_sharply),
+        cmocka_unit_test(the_best_lends_its_detail),
+        cmocka_unit_test(little_of_an_edge_is_lent), cmocka_unit_test(an_area_lends_nothing),
         cmocka_unit_test(the_second_is_read_from_one_level),
         cmocka_unit_test(the_bilinear_filter_mixes_levels),
         cmocka_unit_test(outliers_lose),

@@ -50,27 +50,23 @@ void main()
     }
     for (int k = 1; k < KEPT; k++)
         r.next = photos_per_pixel == float(k) ? r.best[k].penalty : r.next;
-    vec4 samples[KEPT];
-    float shown[KEPT];
+    samples from;
+    from.detail = vec4(0.0);
     for (int k = 0; k < KEPT; k++) {
         sight one = r.best[k];
-        float weight = sight_weight(r, k, s);
-        samples[k] = vec4(0.0);
-        shown[k] = 0.0;
-        if (weight > 0.0) {
-            samples[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip);
-            shown[k] = samples[k].a;
-            samples[k].a = weight;
-        }
+        from.weight[k] = sight_weight(r, k, s);
+        from.shown[k] = vec4(0.0);
+        if (from.weight[k] > 0.0)
+            from.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, from.detail);
     }
-    float blur;
-    vec4 color = blend(s, r, samples, blur);
+    float luma, blur;
+    vec4 color = blend(s, r, from, luma, blur);
     if (!(color.a > 0.0))
         return;
     painted = guessed && blur > 0.0 ? pixel_to_blur(color.rgb, blur) : pixel_finished(color.rgb, !guessed);
     float number = photo_at(r.best[0].index).file.x;
     source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 1.0);
 #ifdef SOFT
-    source.b = blend_luma(shown, samples);
+    source.b = luma;
 #endif
 }

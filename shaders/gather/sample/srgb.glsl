@@ -40,19 +40,27 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
     return vec4(photo_filtered(source, pixel, mip).rgb, 1.0);
 }
 
-// SHARP: how many of a pixel's photographs are read with the filter that is asked for, 2 unless the painter says.
-// They have most of the weight. The others are read with one fetch.
-#ifndef SHARP
-#define SHARP 2
-#endif
+// How much detail of the best photograph counts, as a share of what is shown: more stands beside edges alone, which do
+// not lie in the same place in all photographs.
+const float DETAIL_MAX = 0.25;
 
-// The sample of the k-th best photograph, from 0, and w of photo_texel.
-vec4 photo_ranked(photo source, int k, vec2 pixel, float mip)
+// The sample of the k-th best photograph, from 0, and w of photo_texel. The best one is read with the filter that is
+// asked for, the others with one fetch. detail: set for k = 0 to the share of that one by which they differ in it.
+vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
 {
-    if (k < SHARP)
-        return photo_filtered(source, pixel, mip);
+#ifdef BICUBIC
     // The level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM.
     float level = floor(max(mip - 0.3, 0.0));
     vec4 texel = photo_bilinear(source, pixel, level);
-    return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
+    vec4 plain = vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
+    if (k > 0)
+        return plain;
+    vec4 sharp = photo_filtered(source, pixel, mip);
+    // Where a pixel of the view covers more than one of the photograph, the two differ by aliasing alone.
+    vec4 most = DETAIL_MAX * plain;
+    detail = exp2(mip) < AREA_FROM ? clamp(sharp - plain, -most, most) / max(plain, 1e-9) : vec4(0.0);
+    return sharp;
+#else
+    return photo_filtered(source, pixel, mip);
+#endif
 }

@@ -63,11 +63,6 @@ double orl_frame_footprint(const struct frame *frame)
     return count > 0 ? fmax(sum / count / frame->view->camera.fx, 1) : 1;
 }
 
-bool orl_frame_is_coarse(const struct frame *frame)
-{
-    return orl_frame_footprint(frame) >= 1.5;
-}
-
 void orl_frame_ground(const struct frame *frame, float out[4])
 {
     const struct orl_ground *ground = &frame->scene->ground;

@@ -58,8 +58,6 @@ bool orl_frame_rests(const struct frame *frame);
 // the mean over the photographs; at least 1. What is known of the scene by photographs, such as where
 // a silhouette is, is as exact as their pixels, whatever the view's are.
 double orl_frame_footprint(const struct frame *frame);
-// True if the view's pixels are clearly wider than the photographs', 1.5 times or more.
-bool orl_frame_is_coarse(const struct frame *frame);
 // The scene's ground for image_block and gather_block; zeros if the frame's estimated depth is not
 // limited by the ground.
 void orl_frame_ground(const struct frame *frame, float ground[4]);

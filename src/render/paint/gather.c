@@ -124,7 +124,7 @@ static void copy_options(const struct orl_render_params *params, struct render_o
 
 int orl_tile_side(const struct frame *frame)
 {
-    return orl_frame_is_coarse(frame) ? 8 : 16;
+    return orl_frame_footprint(frame) >= 1.5 ? 8 : 16;
 }
 
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count)

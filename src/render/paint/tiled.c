@@ -33,10 +33,9 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     char defines[64];
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
-    // The numbers of photographs are part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%sKEPT %d\nSHARP %d", rest_define(frame),
-             frame->soft ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f),
-             orl_frame_is_coarse(frame) ? 1 : 2);
+    // The number of photographs is part of the program, so that none is sampled in vain.
+    snprintf(defines, sizeof defines, "%s%sKEPT %d", rest_define(frame),
+             frame->soft ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
