@@ -155,6 +155,19 @@ def overall(rows, scenes):
 
 # --- the report ---
 
+def place_names(axis, dots):
+    """Names beside dots (x, y, name), one above the other where they would overlap."""
+    width, height, taken = 80, 11, []  # of a name, in pixels
+    axis.autoscale_view()
+    at = [(*axis.transData.transform((x, y)), x, y, name) for x, y, name in dots]
+    for left, bottom, x, y, name in sorted(at, key=lambda dot: dot[1]):
+        up = 4
+        while any(abs(left - there[0]) < width and abs(bottom + up - there[1]) < height for there in taken):
+            up += 1
+        taken.append((left, bottom + up))
+        axis.annotate(name, (x, y), fontsize=7, xycoords="data", textcoords="offset pixels", xytext=(5, up))
+
+
 def draw(rows, title, path):
     """Four figures against the time of a frame."""
     plot = report.pyplot()
@@ -165,15 +178,14 @@ def draw(rows, title, path):
              ("SSIM", lambda row: row["mean"]["ssim"]), ("FLIP", lambda row: row["mean"]["flip"]),
              ("flicker", lambda row: row["flicker"])]
     for axis, (label, value) in zip(axes.flat, shown):
-        for method in dict.fromkeys(row["method"] for row in timed):
-            dots = [row for row in timed if row["method"] == method and value(row) is not None]
-            axis.plot([row["frame_ms"] for row in dots], [value(row) for row in dots], "o",
-                      label=method, alpha=0.8)
-            for row in dots:
-                if not row["setting"]:
-                    axis.annotate(method, (row["frame_ms"], value(row)), fontsize=7,
-                                  textcoords="offset points", xytext=(4, 4))
         axis.set(xscale="log", xlabel="milliseconds a frame", ylabel=label)
+        named = []
+        for n, method in enumerate(dict.fromkeys(row["method"] for row in timed)):
+            dots = [row for row in timed if row["method"] == method and value(row) is not None]
+            axis.plot([row["frame_ms"] for row in dots], [value(row) for row in dots], "os^"[n // 10 % 3],
+                      color=f"C{n % 10}", label=method, alpha=0.8)
+            named += [(row["frame_ms"], value(row), method) for row in dots if not row["setting"]]
+        place_names(axis, named)
     front = sorted((row for row in timed if row["on_front"]), key=lambda row: row["frame_ms"])
     axes[0, 0].plot([row["frame_ms"] for row in front], [row["mean"]["psnr_db"] for row in front],
                     color="grey", linewidth=1, zorder=0, label="the front")
