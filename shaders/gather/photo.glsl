@@ -91,8 +91,11 @@ vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 
 #include "gather/bicubic.glsl"
 
-vec4 photo_bicubic(photo source, vec2 pixel, float mip)
+// plain: what bicubic() says.
+vec4 photo_bicubic(photo source, vec2 pixel, float mip, out vec4 plain)
 {
-    vec4 texel = bicubic(pixel, source.gain.w, slot_size.xy, mip);
-    return photo_complete(texel, pixel, source.gain.w, floor(mip + 0.5));
+    vec4 texel = bicubic(pixel, source.gain.w, slot_size.xy, mip, plain);
+    float level = floor(mip + 0.5);
+    plain = photo_complete(plain, pixel, source.gain.w, level);
+    return photo_complete(texel, pixel, source.gain.w, level);
 }

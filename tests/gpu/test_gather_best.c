@@ -188,24 +188,24 @@ static void each_pixel_gets_its_photographs(void **state)
     teardown(&f);
 }
 
-// The last photograph becomes black but for a line, one pixel wide.
-static void paint_line(struct fixture *f, int at, const uint8_t color[3])
+// The last photograph becomes black but for a line, one pixel wide: a column, or with `across` a row.
+static void paint_line(struct fixture *f, bool across, int at, const uint8_t color[3])
 {
     const struct orl_camera *camera = &f->photos[f->scene.photo_count - 1].view.camera;
     struct orl_image image;
     assert_int_equal(orl_image_init(NULL, &image, camera->width, camera->height, 3, ORL_PIXEL_U8), ORL_OK);
     memset(image.u8, 0, (size_t)(3 * camera->width * camera->height));
-    for (int y = 0; y < camera->height; y++)
-        memcpy(&image.u8[3 * (y * camera->width + at)], color, 3);
+    for (int i = 0; i < camera->width * camera->height; i++)
+        if ((across ? i / camera->width : i % camera->width) == at)
+            memcpy(&image.u8[3 * i], color, 3);
     repaint_photo(f, &image);
 }
 
 // The view's pixel lies a quarter of a pixel beside a line in each of three photographs. The Catmull-Rom filter, with
 // which the best one is read, gives the line more weight there than the bilinear one. The others show as much more.
-static void the_best_lends_its_detail(void **state)
+static void check_detail(bool across)
 {
-    (void)state;
-    enum { AT = 18 };
+    enum { AT = 18, OTHER = 26 };
     static const uint8_t white[3] = {255, 255, 255};
     const uint8_t *const colors[3] = {white, green, blue};
     struct fixture f;
@@ -214,17 +214,24 @@ static void the_best_lends_its_detail(void **state)
     struct orl_render_params params = best();
     for (int i = 0; i < 3; i++) {
         x[i] = -0.025 - 0.1 * i; // 0.1 on the wall is a pixel
-        add_photo(&f, look(x[i], 0, 0), colors[i]);
-        paint_line(&f, AT + i, colors[i]);
-        w[i] = pow(penalty(0, x[0], AT, 26) / penalty(0, x[i], AT, 26), (double)params.sharpness);
+        add_photo(&f, look(across ? 0 : x[i], across ? x[i] : 0, 0), colors[i]);
+        paint_line(&f, across, AT + i, colors[i]);
+        w[i] = pow(penalty(0, x[0], AT, OTHER) / penalty(0, x[i], AT, OTHER), (double)params.sharpness);
         sum += w[i];
     }
     const double sharp = 1 + 0.25 * 0.25 * (-2.5 + 1.5 * 0.25), shares[3] = {w[0], w[0] + w[1], w[0] + w[2]};
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     for (int c = 0; c < 3; c++)
-        assert_float_equal(color_at(&frame, AT, 26)[c], sharp * shares[c] / sum, 4e-3);
+        assert_float_equal(color_at(&frame, across ? OTHER : AT, across ? AT : OTHER)[c], sharp * shares[c] / sum, 4e-3);
     orl_frame_finish(&frame);
     teardown(&f);
+}
+
+static void the_best_lends_its_detail(void **state)
+{
+    (void)state;
+    check_detail(false);
+    check_detail(true);
 }
 
 // The last photograph becomes black left of a column and has this colour from there on.
@@ -277,7 +284,7 @@ static void add_fine_photo(struct fixture *f, double finer)
     struct orl_view view = look_from(0, 0, 0, FINE_SIDE, 40 * finer);
     view.camera.cx = LINE + 0.5 - finer * (LINE_AT + 0.5 - 24);
     add_photo(f, view, blue);
-    paint_line(f, LINE, blue);
+    paint_line(f, false, LINE, blue);
 }
 
 // At the line, in the level of pixels that are twice as large: the line is half of such a pixel, whose

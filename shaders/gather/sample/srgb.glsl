@@ -22,7 +22,7 @@ vec4 photo_filtered(photo source, vec2 pixel, float mip)
 {
     // Each filter is a program of its own, since software renderers run both sides of a condition.
 #ifdef BICUBIC
-    vec4 texel = photo_bicubic(source, pixel, mip);
+    vec4 plain, texel = photo_bicubic(source, pixel, mip, plain);
 #else
     // Mip levels are interpolated only in a narrow range, where a software renderer reads two
     // levels.
@@ -49,17 +49,14 @@ const float DETAIL_MAX = 0.25;
 vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
 {
 #ifdef BICUBIC
-    // The level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM.
-    float level = floor(max(mip - 0.3, 0.0));
-    vec4 texel = photo_bilinear(source, pixel, level);
-    vec4 plain = vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
-    if (k > 0)
-        return plain;
-    vec4 sharp = photo_filtered(source, pixel, mip);
+    if (k > 0) { // the level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM
+        vec4 texel = photo_bilinear(source, pixel, floor(max(mip - 0.3, 0.0)));
+        return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
+    }
+    vec4 plain, sharp = photo_bicubic(source, pixel, mip, plain), most = DETAIL_MAX * plain;
     // Where a pixel of the view covers more than one of the photograph, the two differ by aliasing alone.
-    vec4 most = DETAIL_MAX * plain;
     detail = exp2(mip) < AREA_FROM ? clamp(sharp - plain, -most, most) / max(plain, 1e-9) : vec4(0.0);
-    return sharp;
+    return vec4(photo_aligned(source, pixel, sharp.rgb), sharp.a);
 #else
     return photo_filtered(source, pixel, mip);
 #endif
