@@ -156,35 +156,40 @@ def overall(rows, scenes):
 # --- the report ---
 
 def place_names(axis, dots):
-    """Names beside dots (x, y, name), one above the other where they would overlap."""
-    width, height, taken = 80, 11, []  # of a name, in pixels
+    """Names beside dots (x, y, name, colour), one above the other where they would overlap."""
+    size, taken = 7, []  # in points
     axis.autoscale_view()
-    at = [(*axis.transData.transform((x, y)), x, y, name) for x, y, name in dots]
-    for left, bottom, x, y, name in sorted(at, key=lambda dot: dot[1]):
-        up = 4
-        while any(abs(left - there[0]) < width and abs(bottom + up - there[1]) < height for there in taken):
+    scale = 72 / axis.figure.dpi
+    at = [(*scale * axis.transData.transform((x, y)), x, y, name, color) for x, y, name, color in dots]
+    for left, bottom, x, y, name, color in sorted(at, key=lambda dot: dot[1]):
+        right, up = left + 0.6 * size * len(name), 4
+        while any(left < there[1] and there[0] < right and abs(bottom + up - there[2]) < size for there in taken):
             up += 1
-        taken.append((left, bottom + up))
-        axis.annotate(name, (x, y), fontsize=7, xycoords="data", textcoords="offset pixels", xytext=(5, up))
+        taken.append((left, right, bottom + up))
+        axis.annotate(name, (x, y), fontsize=size, color=color, textcoords="offset points", xytext=(4, up))
 
 
 def draw(rows, title, path):
     """Four figures against the time of a frame."""
     plot = report.pyplot()
     figure, axes = plot.subplots(2, 2, figsize=(12, 9))
-    figure.suptitle(title)
+    figure.suptitle(title, y=0.92)
     timed = [row for row in rows if row["frame_ms"]]
     shown = [("PSNR of whole pictures, dB", lambda row: row["mean"]["psnr_db"]),
              ("SSIM", lambda row: row["mean"]["ssim"]), ("FLIP", lambda row: row["mean"]["flip"]),
              ("flicker", lambda row: row["flicker"])]
     for axis, (label, value) in zip(axes.flat, shown):
         axis.set(xscale="log", xlabel="milliseconds a frame", ylabel=label)
+        axis.xaxis.set_major_locator(plot.LogLocator(subs=(1, 2, 5)))
+        axis.xaxis.set_major_formatter("{x:g}")
+        axis.xaxis.set_minor_locator(plot.NullLocator())
         named = []
         for n, method in enumerate(dict.fromkeys(row["method"] for row in timed)):
             dots = [row for row in timed if row["method"] == method and value(row) is not None]
+            color = f"C{n % 10}"
             axis.plot([row["frame_ms"] for row in dots], [value(row) for row in dots], "os^"[n // 10 % 3],
-                      color=f"C{n % 10}", label=method, alpha=0.8)
-            named += [(row["frame_ms"], value(row), method) for row in dots if not row["setting"]]
+                      color=color, label=method, alpha=0.8)
+            named += [(row["frame_ms"], value(row), method, color) for row in dots if not row["setting"]]
         place_names(axis, named)
     front = sorted((row for row in timed if row["on_front"]), key=lambda row: row["frame_ms"])
     axes[0, 0].plot([row["frame_ms"] for row in front], [row["mean"]["psnr_db"] for row in front],
