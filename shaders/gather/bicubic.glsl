@@ -14,18 +14,19 @@
 // From this width on, in pixels, the variance is that of a bilinear sample or more.
 const float AREA_FROM = 1.73205;
 
-// plain: the bilinear sample in the middle.
+// plain: the sample before the blur is undone; the same sample where a pixel of the view covers more.
 vec4 bicubic(vec2 pixel, float slot, vec2 size, float mip, out vec4 plain)
 {
     bool covers_more = exp2(mip) >= AREA_FROM;
     float lod = max(floor(mip) - 1.0, 0.0), width = exp2(mip - lod);
     vec2 size_at = max(floor(size / exp2(lod)), vec2(1.0));
-    vec2 at = pixel / size * size_at, f = fract(at - 0.5), blur = 0.5 * f * (1.0 - f), texel = 1.0 / size_at;
+    vec2 at = pixel / size * size_at, f = fract(at - 0.5), texel = 1.0 / size_at;
     float apart = sqrt(max((width * width - 1.0) / 12.0 - 1.0 / 6.0, 0.0));
     vec2 one = covers_more ? vec2(apart) : vec2(1.0, 0.0), other = covers_more ? vec2(apart, -apart) : vec2(0.0, 1.0);
-    plain = photo_texel(at * texel, slot, lod);
+    vec2 blur = covers_more ? vec2(0.0) : 0.5 * f * (1.0 - f);
+    vec4 middle = photo_texel(at * texel, slot, lod);
     vec4 ones = photo_texel((at - one) * texel, slot, lod) + photo_texel((at + one) * texel, slot, lod);
     vec4 others = photo_texel((at - other) * texel, slot, lod) + photo_texel((at + other) * texel, slot, lod);
-    vec4 sharp = plain - blur.x * (ones - 2.0 * plain) - blur.y * (others - 2.0 * plain);
-    return max(covers_more ? 0.25 * (ones + others) : sharp, 0.0);
+    plain = covers_more ? 0.25 * (ones + others) : middle;
+    return max(plain - blur.x * (ones - 2.0 * middle) - blur.y * (others - 2.0 * middle), 0.0);
 }

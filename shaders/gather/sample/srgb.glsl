@@ -45,7 +45,8 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
 const float DETAIL_MAX = 0.25;
 
 // The sample of the k-th best photograph, from 0, and w of photo_texel. The best one is read with the filter that is
-// asked for, the others with one fetch. detail: set for k = 0 to the share of that one by which they differ in it.
+// asked for, the others with one fetch. detail: set for k = 0 to what the bicubic filter adds, as a share of the sample
+// without it.
 vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
 {
 #ifdef BICUBIC
@@ -54,8 +55,7 @@ vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
         return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
     }
     vec4 plain, sharp = photo_bicubic(source, pixel, mip, plain), most = DETAIL_MAX * plain;
-    // Where a pixel of the view covers more than one of the photograph, the two differ by aliasing alone.
-    detail = exp2(mip) < AREA_FROM ? clamp(sharp - plain, -most, most) / max(plain, 1e-9) : vec4(0.0);
+    detail = clamp(sharp - plain, -most, most) / max(plain, 1e-9);
     return vec4(photo_aligned(source, pixel, sharp.rgb), sharp.a);
 #else
     return photo_filtered(source, pixel, mip);
