@@ -53,9 +53,7 @@ static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
 static enum orl_result lock_folder(struct orl_job *job, bool empty)
 {
     bool taken = false;
-    char *path = orl_job_path(job, ".oriel/lock");
-    enum orl_result result = path ? orl_lock(job->log, path, &job->lock_fd, &taken)
-                                  : ORL_ERR_MEMORY;
+    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, ".oriel/lock"), &job->lock_fd, &taken);
     bool begun = orl_job_has(job, ".oriel/stages.json");
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT,
@@ -63,7 +61,6 @@ static enum orl_result lock_folder(struct orl_job *job, bool empty)
     else if (result == ORL_OK && begun && !job->params->resume)
         result = fail_there(job);
     job->fresh = result == ORL_OK && empty && !begun;
-    free(path);
     return result;
 }
 
@@ -80,11 +77,8 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
         return orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
     bool empty = false;
     enum orl_result result = claim_folder(job, &empty);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
-        char *path = orl_job_path(job, "%s", dirs[i]);
-        result = path ? orl_dir_make(log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++)
+        result = orl_dir_make(log, ORL_PATH(job->dir, "%s", dirs[i]));
     return result == ORL_OK ? lock_folder(job, empty) : result;
 }
 
@@ -92,11 +86,9 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
 enum orl_result orl_job_take_sources(struct orl_job *job)
 {
     struct orl_names train = {0};
-    char *path = orl_job_path(job, "sparse"), *list = orl_job_path(job, "stereo/fusion.cfg");
-    enum orl_result result = path && list ? orl_colmap_read(job->log, path, &job->sparse.model)
-                                          : ORL_ERR_MEMORY;
+    enum orl_result result = orl_colmap_read(job->log, ORL_PATH(job->dir, "sparse"), &job->sparse.model);
     job->sparse.known = result == ORL_OK;
-    ORL_THEN(result, orl_file_read_names(job->log, list, &train));
+    ORL_THEN(result, orl_file_read_names(job->log, ORL_PATH(job->dir, "stereo/fusion.cfg"), &train));
     const struct orl_colmap_model *model = &job->sparse.model;
     if (result == ORL_OK)
         job->sources = orl_array(job->log, model->image_count + 1, sizeof *job->sources);
@@ -109,8 +101,6 @@ enum orl_result orl_job_take_sources(struct orl_job *job)
         result = source->name ? ORL_OK : ORL_ERR_MEMORY;
     }
     orl_names_finish(&train);
-    free(path);
-    free(list);
     return result;
 }
 
@@ -125,10 +115,7 @@ enum orl_result orl_job_attach(struct orl_job *job, const struct orl_log *log,
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: %s", params->out, strerror(errno));
     if (!orl_job_has(job, ".oriel"))
         return orl_fail(log, ORL_ERR_DATA, "%s: not made by oriel prepare", job->dir);
-    char *lock = orl_job_path(job, ".oriel/lock");
-    enum orl_result result = lock ? orl_lock_shared(log, lock, &job->lock_fd, &taken)
-                                  : ORL_ERR_MEMORY;
-    free(lock);
+    enum orl_result result = orl_lock_shared(log, ORL_PATH(job->dir, ".oriel/lock"), &job->lock_fd, &taken);
     if (result == ORL_OK && taken)
         result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: oriel prepare is at work here", job->dir);
     return result;
@@ -184,38 +171,25 @@ char *orl_job_path(const struct orl_job *job, const char *format, ...)
 
 bool orl_job_has(const struct orl_job *job, const char *name)
 {
-    char *path = orl_job_path(job, "%s", name);
-    bool there = path && access(path, F_OK) == 0;
-    free(path);
-    return there;
+    return access(ORL_PATH(job->dir, "%s", name), F_OK) == 0;
 }
 
 enum orl_result orl_job_replace(const struct orl_job *job, const char *temp, const char *name)
 {
-    char *from = orl_job_path(job, "%s", temp), *to = orl_job_path(job, "%s", name);
-    enum orl_result result = from && to ? orl_dir_remove(job->log, to) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && rename(from, to) != 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", to, strerror(errno));
-    free(from);
-    free(to);
-    return result;
+    const char *from = ORL_PATH(job->dir, "%s", temp), *to = ORL_PATH(job->dir, "%s", name);
+    ORL_TRY(orl_dir_remove(job->log, to));
+    return rename(from, to) == 0 ? ORL_OK : orl_fail(job->log, ORL_ERR_IO, "%s: %s", to, strerror(errno));
 }
 
 enum orl_result orl_job_remove(const struct orl_job *job, const char *name)
 {
-    char *path = orl_job_path(job, "%s", name);
-    enum orl_result result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_dir_remove(job->log, ORL_PATH(job->dir, "%s", name));
 }
 
 enum orl_result orl_job_fresh_dir(const struct orl_job *job, const char *name)
 {
-    char *path = orl_job_path(job, "%s", name);
-    enum orl_result result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_dir_make(job->log, path));
-    free(path);
-    return result;
+    ORL_TRY(orl_job_remove(job, name));
+    return orl_dir_make(job->log, ORL_PATH(job->dir, "%s", name));
 }
 
 enum orl_result orl_job_link(const struct orl_job *job, const char *target, const char *path)
@@ -235,10 +209,7 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target, cons
 
 enum orl_result orl_job_save_stages(const struct orl_job *job)
 {
-    char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = path ? orl_json_write(job->log, path, job->stages) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_json_write(job->log, ORL_PATH(job->dir, ".oriel/stages.json"), job->stages);
 }
 
 enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
@@ -308,10 +279,7 @@ static enum orl_result read_model(const struct orl_job *job, const char *name,
 {
     if (model->known)
         return ORL_OK;
-    char *path = orl_job_path(job, "%s", name);
-    enum orl_result result = path ? orl_colmap_read(job->log, path, &model->model)
-                                  : ORL_ERR_MEMORY;
-    free(path);
+    enum orl_result result = orl_colmap_read(job->log, ORL_PATH(job->dir, "%s", name), &model->model);
     model->known = result == ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < model->model.image_count; i++)
         if (!orl_job_find(job, model->model.images[i].name))

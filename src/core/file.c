@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,20 @@
 
 #include "core/memory.h"
 #include "core/order.h"
+
+const char *orl_path_print(char path[ORL_PATH_SIZE], const char *dir, const char *format, ...)
+{
+    size_t length = strlen(dir);
+    const char *slash = length && dir[length - 1] != '/' ? "/" : "";
+    int used = snprintf(path, ORL_PATH_SIZE, "%s%s", dir, slash);
+    if (used < ORL_PATH_SIZE) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(path + used, (size_t)(ORL_PATH_SIZE - used), format, args);
+        va_end(args);
+    }
+    return path;
+}
 
 char *orl_path_join(const struct orl_log *log, const char *dir, const char *name)
 {

@@ -31,13 +31,31 @@ static void paths(void **state)
         char *path = orl_path_join(NULL, want[i][0], want[i][1]);
         assert_string_equal(path, want[i][2]);
         free(path);
+        assert_string_equal(ORL_PATH(want[i][0], "%s", want[i][1]), want[i][2]);
     }
+    assert_string_equal(ORL_PATH("", "%05d.png", 7), "00007.png");
     assert_string_equal(orl_path_name("a/b/c.png"), "c.png");
     assert_string_equal(orl_path_name("c.png"), "c.png");
     assert_string_equal(orl_path_name("a/"), "");
     assert_true(orl_path_is_dir(dir));
     assert_false(orl_path_is_file(dir));
     assert_false(orl_path_is_file("/nowhere/at/all"));
+}
+
+// All slashes: a shorter cut would be the root folder.
+static void long_paths_open_nothing(void **state)
+{
+    (void)state;
+    char name[2 * ORL_PATH_SIZE];
+    FILE *stream;
+    memset(name, '/', sizeof name);
+    name[sizeof name - 1] = 0;
+    const char *const cut[] = {ORL_PATH("/", "%s", name), ORL_PATH(name, "b")};
+    for (size_t i = 0; i < ORL_COUNT(cut); i++) {
+        assert_int_equal(strlen(cut[i]), ORL_PATH_SIZE - 1);
+        assert_false(orl_path_is_dir(cut[i]));
+        assert_int_not_equal(orl_file_open(NULL, cut[i], &stream), ORL_OK);
+    }
 }
 
 static void names_without_extension(void **state)
@@ -273,6 +291,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths),
+        cmocka_unit_test(long_paths_open_nothing),
         cmocka_unit_test(names_without_extension),
         cmocka_unit_test(lines_of_a_text),
         cmocka_unit_test(temporary_folders),
