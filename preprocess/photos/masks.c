@@ -118,14 +118,10 @@ static enum orl_result take_mask(const struct orl_job *job, struct orl_source *s
 static enum orl_result find_mask(const struct orl_job *job, struct orl_source *source,
                                  struct counts *counts)
 {
-    char *path = NULL;
-    enum orl_result result = orl_mask_find(job->log, job->params->masks_dir, source->given, &path);
-    if (result == ORL_OK && !path)
-        result = orl_mask_find(job->log, job->params->masks_dir, source->name, &path);
-    if (result == ORL_OK && path)
-        result = take_mask(job, source, path, counts);
-    free(path);
-    return result;
+    char path[ORL_PATH_SIZE];
+    const char *dir = job->params->masks_dir;
+    bool there = orl_mask_find(dir, source->given, path) || orl_mask_find(dir, source->name, path);
+    return there ? take_mask(job, source, path, counts) : ORL_OK;
 }
 
 static enum orl_result judge(const struct orl_job *job, const struct counts *counts)

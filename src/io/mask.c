@@ -1,10 +1,7 @@
 #include "io/mask.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
 #include "io/picture.h"
 
 enum {
@@ -90,25 +87,19 @@ size_t orl_mask_count(const struct orl_image *mask)
     return marked;
 }
 
-enum orl_result orl_mask_find(const struct orl_log *log, const char *dir, const char *name,
-                              char **path)
+bool orl_mask_find(const char *dir, const char *name, char path[ORL_PATH_SIZE])
 {
     static const char *const extensions[] = {"png", "PNG", "jpg", "JPG", "jpeg", "JPEG", "tif",
                                              "tiff", "pbm", "pgm", "ppm", "exr"};
     static const char *const endings[] = {"", "_mask", ".mask"};
     const int lengths[] = {(int)strlen(name), (int)orl_path_stem(name)};
     enum { TRIES = ORL_COUNT(lengths) * ORL_COUNT(endings) * ORL_COUNT(extensions) };
-    *path = NULL;
-    for (size_t i = 0; i < TRIES && !*path; i++) {
+    for (size_t i = 0; i < TRIES; i++) {
         const char *extension = extensions[i / (ORL_COUNT(lengths) * ORL_COUNT(endings))];
         const char *ending = endings[i / ORL_COUNT(lengths) % ORL_COUNT(endings)];
-        char *file = orl_format(log, "%s/%.*s%s.%s", dir, lengths[i % ORL_COUNT(lengths)], name,
-                                ending, extension);
-        ORL_TRY_MEMORY(file);
-        if (orl_path_is_file(file))
-            *path = file;
-        else
-            free(file);
+        orl_path_print(path, dir, "%.*s%s.%s", lengths[i % ORL_COUNT(lengths)], name, ending, extension);
+        if (orl_path_is_file(path))
+            return true;
     }
-    return ORL_OK;
+    return false;
 }

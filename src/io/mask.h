@@ -2,6 +2,7 @@
 #ifndef ORL_IO_MASK_H
 #define ORL_IO_MASK_H
 
+#include "core/file.h"
 #include "oriel/image.h"
 
 // Reads a mask as U8 x1: 255 for pixels that count, 0 for others.
@@ -21,8 +22,7 @@ size_t orl_mask_count(const struct orl_image *mask);
 
 // Finds the mask of the photograph `name`, such as "cam1/0001.jpg", in `dir`: cam1/0001.jpg.png,
 // cam1/0001.png, or with another extension of a picture, or with "_mask" or ".mask" before the
-// extension. *path is released with free(); NULL: there is none.
-enum orl_result orl_mask_find(const struct orl_log *log, const char *dir, const char *name,
-                              char **path) ORL_CHECK_RESULT;
+// extension. False: there is none.
+bool orl_mask_find(const char *dir, const char *name, char path[ORL_PATH_SIZE]);
 
 #endif

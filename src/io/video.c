@@ -179,25 +179,21 @@ enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_pro
     struct orl_atomic_file file = {0};
     char rate[32];
     snprintf(rate, sizeof rate, "%g", fps);
-    char *pattern = orl_path_join(log, frames_dir, "%05d.png");
-    enum orl_result result = pattern ? orl_atomic_begin(log, path, &file) : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        // Most players support only even sizes and 4:2:0 chroma subsampling.
-        const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y",
-                                    "-framerate", rate, "-i", pattern,
-                                    "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2,"
-                                           "scale=out_color_matrix=bt709:out_range=tv:"
-                                           "flags=accurate_rnd",
-                                    "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
-                                    "-colorspace", "bt709", "-color_primaries", "bt709",
-                                    "-color_trc", "iec61966-2-1", "-color_range", "tv",
-                                    "-movflags", "+faststart", file.temp, NULL};
-        result = orl_process_run(log, &(struct orl_process_params){.argv = argv,
-                                                                   .progress = progress}, NULL);
-    }
+    ORL_TRY(orl_atomic_begin(log, path, &file));
+    // Most players support only even sizes and 4:2:0 chroma subsampling.
+    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y",
+                                "-framerate", rate, "-i", ORL_PATH(frames_dir, "%%05d.png"),
+                                "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2,"
+                                       "scale=out_color_matrix=bt709:out_range=tv:"
+                                       "flags=accurate_rnd",
+                                "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
+                                "-colorspace", "bt709", "-color_primaries", "bt709",
+                                "-color_trc", "iec61966-2-1", "-color_range", "tv",
+                                "-movflags", "+faststart", file.temp, NULL};
+    enum orl_result result = orl_process_run(log, &(struct orl_process_params){.argv = argv,
+                                                                               .progress = progress}, NULL);
     ORL_THEN(result, orl_atomic_commit(log, &file));
     orl_atomic_abort(&file);
-    free(pattern);
     return result;
 }
 
@@ -216,16 +212,13 @@ enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_pro
     char *filters = orl_format(log, "%sselect=gte(n\\,%d)*not(mod(n-%d\\,%d)),%snull",
                                video.first, range->first, range->first, range->step,
                                video.colours);
-    char *pattern = orl_path_join(log, frames_dir, "%05d.ppm");
     const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-noautorotate",
                                 "-i", path, "-map", "0:V:0", "-vf", filters, "-fps_mode", "passthrough",
-                                "-frames:v", most, "-start_number", "0", pattern, NULL};
-    result = filters && pattern
-                 ? orl_process_run(log, &(struct orl_process_params){.argv = argv,
-                                                                     .progress = progress}, NULL)
-                 : ORL_ERR_MEMORY;
+                                "-frames:v", most, "-start_number", "0",
+                                ORL_PATH(frames_dir, "%%05d.ppm"), NULL};
+    result = filters ? orl_process_run(log, &(struct orl_process_params){.argv = argv, .progress = progress}, NULL)
+                     : ORL_ERR_MEMORY;
     free(filters);
-    free(pattern);
     ORL_THEN(result, orl_dir_list(log, frames_dir, &names));
     if (result == ORL_OK && !names.count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: this clip has no frame %d", path, range->first);
