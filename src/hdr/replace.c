@@ -39,25 +39,22 @@ static enum orl_result write_picture(const struct replacement *r, const char *na
                                      const struct orl_image *light)
 {
     struct orl_image picture = {0};
-    char *path = orl_format(r->log, "%s/images/%s", r->dir, name);
-    enum orl_result result = path ? orl_file_make_folder(r->log, path) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_tone_apply(r->log, light, &r->params->tone, &picture));
+    const char *path = ORL_PATH(r->dir, "images/%s", name);
+    ORL_TRY(orl_file_make_folder(r->log, path));
+    enum orl_result result = orl_tone_apply(r->log, light, &r->params->tone, &picture);
     if (result == ORL_OK)
         result = orl_path_has_extension(name, "jpg jpeg") ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
                                : orl_png_write(r->log, path, &picture);
     orl_image_finish(&picture);
-    free(path);
     return result;
 }
 
 static enum orl_result write_light(const struct replacement *r, const char *name,
                                    const struct orl_image *light)
 {
-    char *path = orl_format(r->log, "%s/images_linear/%s.exr", r->dir, name);
-    enum orl_result result = path ? orl_file_make_folder(r->log, path) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_linear_write(r->log, path, light));
-    free(path);
-    return result;
+    const char *path = ORL_PATH(r->dir, "images_linear/%s.exr", name);
+    ORL_TRY(orl_file_make_folder(r->log, path));
+    return orl_linear_write(r->log, path, light);
 }
 
 static enum orl_result replace_photo(const struct replacement *r, size_t photo)
@@ -113,10 +110,7 @@ static enum orl_result write_manifest(const struct replacement *r)
                                   "photographs", (json_int_t)r->count, "merge",
                                   orl_hdr_merge_names[r->hdr->params.merge], "method",
                                   r->params->method));
-    char *path = orl_path_join(r->log, r->dir, "scene.json");
-    enum orl_result result = path ? orl_json_write(r->log, path, r->manifest) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_json_write(r->log, ORL_PATH(r->dir, "scene.json"), r->manifest);
 }
 
 static enum orl_result choose(struct replacement *r)
