@@ -26,21 +26,19 @@ struct job {
 };
 
 // "DIR/<folder>/camNN<ending>", or of a sequence "DIR/<folder>/camNN/NNNNN<ending>".
-static char *view_path(const struct job *job, const char *folder, int camera, int frame,
-                       const char *ending)
+#define VIEW_PATH(...) view_path((char[ORL_PATH_SIZE]){""}, __VA_ARGS__)
+static const char *view_path(char path[ORL_PATH_SIZE], const struct job *job, const char *folder, int camera, int frame,
+                             const char *ending)
 {
-    if (job->params->frames == 1 || frame < 0)
-        return orl_format(job->log, "%s/%s/cam%02d%s", job->dir, folder, camera, ending);
-    return orl_format(job->log, "%s/%s/cam%02d/%05d%s", job->dir, folder, camera, frame, ending);
+    return job->params->frames == 1 || frame < 0
+               ? orl_path_print(path, job->dir, "%s/cam%02d%s", folder, camera, ending)
+               : orl_path_print(path, job->dir, "%s/cam%02d/%05d%s", folder, camera, frame, ending);
 }
 
 static enum orl_result write_png(const struct job *job, const char *folder, int camera, int frame,
                                  const struct orl_image *image)
 {
-    char *path = view_path(job, folder, camera, frame, ".png");
-    enum orl_result result = path ? orl_png_write(job->log, path, image) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_png_write(job->log, VIEW_PATH(job, folder, camera, frame, ".png"), image);
 }
 
 static enum orl_result write_depth(const struct job *job, int camera, int frame,
@@ -50,10 +48,7 @@ static enum orl_result write_depth(const struct job *job, int camera, int frame,
         .width = depth->width, .height = depth->height, .channel_count = 1,
         .channels = {{.name = "depth.Z", .data = depth->f32, .stride = 1}},
         .attributes = {.view = &job->views[camera]}};
-    char *path = view_path(job, "depth", camera, frame, ".exr");
-    enum orl_result result = path ? orl_exr_write(job->log, path, &exr) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_exr_write(job->log, VIEW_PATH(job, "depth", camera, frame, ".exr"), &exr);
 }
 
 static json_t *rows_json(const double *values, int rows, int columns)
@@ -83,12 +78,10 @@ static enum orl_result write_cameras(const struct job *job)
     }
     json_t *root = json_pack("{s:f, s:o, s:o}", "pixel_centre", 0.5, "room",
                              orl_manifest_room(&orl_figures_room), "cameras", list);
-    char *path = orl_path_join(job->log, job->dir, "cameras.json");
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
-    enum orl_result result = path && text ? orl_file_write(job->log, path, text, strlen(text))
-                                          : ORL_ERR_MEMORY;
+    enum orl_result result =
+        text ? orl_file_write(job->log, ORL_PATH(job->dir, "cameras.json"), text, strlen(text)) : ORL_ERR_MEMORY;
     free(text);
-    free(path);
     json_decref(root);
     return result;
 }
@@ -97,18 +90,14 @@ static enum orl_result make_folders(const struct job *job)
 {
     static const char *const folders[] = {"images", "masks", "depth", "background", "mesh"};
     bool sequence = job->params->frames > 1;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
+    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
         // Backgrounds are one a camera, meshes one a time step.
         bool per_camera = sequence && i < 3;
-        for (int c = 0; result == ORL_OK && c < (per_camera ? job->params->cameras : 1); c++) {
-            char *path = per_camera ? view_path(job, folders[i], c, -1, "")
-                                    : orl_path_join(job->log, job->dir, folders[i]);
-            result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
-            free(path);
-        }
+        for (int c = 0; c < (per_camera ? job->params->cameras : 1); c++)
+            ORL_TRY(orl_dir_make(job->log, per_camera ? VIEW_PATH(job, folders[i], c, -1, "")
+                                                      : ORL_PATH(job->dir, "%s", folders[i])));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result write_backgrounds(const struct job *job)
@@ -127,14 +116,9 @@ static enum orl_result write_mesh(const struct job *job, const struct orl_figure
                                   int frame)
 {
     struct orl_mesh mesh;
-    char *path = orl_format(job->log, "%s/mesh/%05d.ply", job->dir, frame);
-    enum orl_result result = path ? orl_figure_mesh(job->log, figure, MESH_SPACING, &mesh)
-                                  : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        result = orl_mesh_write(job->log, path, &mesh);
-        orl_mesh_finish(&mesh);
-    }
-    free(path);
+    ORL_TRY(orl_figure_mesh(job->log, figure, MESH_SPACING, &mesh));
+    enum orl_result result = orl_mesh_write(job->log, ORL_PATH(job->dir, "mesh/%05d.ply", frame), &mesh);
+    orl_mesh_finish(&mesh);
     return result;
 }
 
@@ -212,14 +196,9 @@ enum orl_result orl_figures_play(const struct orl_log *log, const struct orl_pro
         wait_until(start + f / rate);
         orl_progress_report(progress, "live", f, params->frames, NULL);
         for (int c = 0; result == ORL_OK && c < params->cameras; c++) {
-            char *pipe = orl_format(log, "%s/cam%02d", dir, c);
-            char *there = pipe ? orl_format(log, "%s/%05d.png", pipe, f) : NULL;
-            char *here = view_path(&from, "images", c, f, ".png");
-            result = pipe && there && here ? orl_file_copy(log, here, orl_path_is_pipe(pipe) ? pipe : there)
-                                           : ORL_ERR_MEMORY;
-            free(pipe);
-            free(there);
-            free(here);
+            const char *pipe = ORL_PATH(dir, "cam%02d", c), *there = ORL_PATH(pipe, "%05d.png", f);
+            result = orl_file_copy(log, VIEW_PATH(&from, "images", c, f, ".png"),
+                                   orl_path_is_pipe(pipe) ? pipe : there);
         }
         if (orl_progress_cancelled(progress))
             result = ORL_ERR_CANCELLED;

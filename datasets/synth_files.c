@@ -26,14 +26,6 @@ struct job {
     const char *photos, *truth;   // folders that are being filled
 };
 
-// "<dir>/<folder>/<NNNN><ending>", to be released with free(). NULL after a logged error.
-static char *view_path(const struct job *job, const char *dir, const char *folder, int index,
-                       const char *ending)
-{
-    return orl_format(job->log, "%s%s%s/%04d%s", dir, *folder ? "/" : "", folder, index + 1,
-                      ending);
-}
-
 // --- photographs ---
 
 static enum orl_result write_photo(const struct job *job, int index,
@@ -46,12 +38,10 @@ static enum orl_result write_photo(const struct job *job, int index,
                             .exposure_s = BASE_EXPOSURE_S * exp2(ev), .aperture = APERTURE,
                             .iso = ISO, .bias_ev = ev, .focal_mm = ORL_SYNTH_FOCAL_35MM,
                             .focal_35mm = ORL_SYNTH_FOCAL_35MM, .orientation = 1};
-    char *path = view_path(job, job->photos, "", index, ".jpg");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_synth_expose(job->log, radiance, &sensor, &photo));
-    ORL_THEN(result, orl_jpeg_write(job->log, path, &photo, JPEG_QUALITY, &exif));
+    enum orl_result result = orl_synth_expose(job->log, radiance, &sensor, &photo);
+    ORL_THEN(result, orl_jpeg_write(job->log, ORL_PATH(job->photos, "%04d.jpg", index + 1), &photo, JPEG_QUALITY,
+                                    &exif));
     orl_image_finish(&photo);
-    free(path);
     return result;
 }
 
@@ -73,27 +63,13 @@ static enum orl_result write_layers(const struct job *job, int index, const char
         channel->data = image->f32 + c;
         channel->stride = (size_t)image->channels;
     }
-    char *path = view_path(job, job->truth, folder, index, ".exr");
-    enum orl_result result = path ? orl_exr_write(job->log, path, &exr) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_exr_write(job->log, ORL_PATH(job->truth, "%s/%04d.exr", folder, index + 1), &exr);
 }
 
 static enum orl_result write_map(const struct job *job, int index, const char *folder,
                                  const struct orl_image *image)
 {
-    char *path = view_path(job, job->truth, folder, index, ".jpg.geometric.bin");
-    enum orl_result result = path ? orl_colmap_map_write(job->log, path, image) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
-static enum orl_result write_mask(const struct job *job, int index, const struct orl_image *image)
-{
-    char *path = view_path(job, job->truth, "vehicle", index, ".png");
-    enum orl_result result = path ? orl_png_write(job->log, path, image) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_colmap_map_write(job->log, ORL_PATH(job->truth, "%s/%04d.jpg.geometric.bin", folder, index + 1), image);
 }
 
 static enum orl_result write_truth(const struct job *job, int index,
@@ -110,7 +86,7 @@ static enum orl_result write_truth(const struct job *job, int index,
     if (frame->textured.data)
         ORL_TRY(write_map(job, index, "stereo/texture_maps", &frame->textured));
     if (frame->vehicle.data)
-        ORL_TRY(write_mask(job, index, &frame->vehicle));
+        ORL_TRY(orl_png_write(job->log, ORL_PATH(job->truth, "vehicle/%04d.png", index + 1), &frame->vehicle));
     return ORL_OK;
 }
 
@@ -119,14 +95,11 @@ static enum orl_result write_truth(const struct job *job, int index,
 static enum orl_result write_colmap_cameras(const struct job *job)
 {
     const struct orl_camera *c = &job->views[0].camera;
-    char *path = orl_path_join(job->log, job->truth, "sparse/cameras.txt");
     char *text = orl_format(job->log, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", c->width,
                             c->height, c->fx, c->fy, c->cx, c->cy);
-    enum orl_result result = path && text
-                                 ? orl_file_write(job->log, path, text, strlen(text))
-                                 : ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(text);
+    enum orl_result result = orl_file_write(job->log, ORL_PATH(job->truth, "sparse/cameras.txt"), text, strlen(text));
     free(text);
-    free(path);
     return result;
 }
 
@@ -134,11 +107,9 @@ static enum orl_result write_colmap_images(const struct job *job)
 {
     enum { LINE_MAX_BYTES = 256 };
     size_t room = (size_t)job->params->count * LINE_MAX_BYTES, length = 0;
-    char *path = orl_path_join(job->log, job->truth, "sparse/images.txt");
-    char *points_path = orl_path_join(job->log, job->truth, "sparse/points3D.txt");
     char *text = orl_array(job->log, room, 1);
-    enum orl_result result = path && points_path && text ? ORL_OK : ORL_ERR_MEMORY;
-    for (int i = 0; result == ORL_OK && i < job->params->count; i++) {
+    ORL_TRY_MEMORY(text);
+    for (int i = 0; i < job->params->count; i++) {
         double q[4];
         const double *t = job->views[i].cam_from_world.t;
         orl_pose_to_quat(&job->views[i].cam_from_world, q);
@@ -147,26 +118,20 @@ static enum orl_result write_colmap_images(const struct job *job)
                                    "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %04d.jpg\n\n",
                                    i + 1, q[0], q[1], q[2], q[3], t[0], t[1], t[2], i + 1);
     }
-    ORL_THEN(result, orl_file_write(job->log, path, text, length));
-    ORL_THEN(result, orl_file_write(job->log, points_path, "", 0));
+    enum orl_result result = orl_file_write(job->log, ORL_PATH(job->truth, "sparse/images.txt"), text, length);
+    ORL_THEN(result, orl_file_write(job->log, ORL_PATH(job->truth, "sparse/points3D.txt"), "", 0));
     free(text);
-    free(points_path);
-    free(path);
     return result;
 }
 
 // Takes ownership of `root`. A NULL value means that memory ran out.
 static enum orl_result write_json(const struct job *job, const char *name, json_t *root)
 {
-    char *path = orl_path_join(job->log, job->truth, name);
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
-    enum orl_result result = ORL_ERR_MEMORY;
-    if (path && text)
-        result = orl_file_write(job->log, path, text, strlen(text));
-    else
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: out of memory", name);
+    enum orl_result result =
+        text ? orl_file_write(job->log, ORL_PATH(job->truth, "%s", name), text, strlen(text))
+             : orl_fail(job->log, ORL_ERR_MEMORY, "%s: out of memory", name);
     free(text);
-    free(path);
     json_decref(root);
     return result;
 }
@@ -243,15 +208,10 @@ static enum orl_result make_folders(const struct job *job)
                                    "stereo/normal_maps",
                                    job->params->plain > 0 ? "stereo/texture_maps" : NULL,
                                    job->params->vehicle ? "vehicle" : NULL};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
-        if (!folders[i])
-            continue;
-        char *path = orl_path_join(job->log, job->truth, folders[i]);
-        result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    return result;
+    for (size_t i = 0; i < ORL_COUNT(folders); i++)
+        if (folders[i])
+            ORL_TRY(orl_dir_make(job->log, ORL_PATH(job->truth, "%s", folders[i])));
+    return ORL_OK;
 }
 
 static enum orl_result draw_all(struct orl_gpu *gpu, const struct orl_progress *progress,
