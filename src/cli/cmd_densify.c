@@ -1,7 +1,6 @@
 // oriel densify: depth and normal maps for a COLMAP workspace, instead of colmap
 // patch_match_stereo.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
@@ -43,8 +42,7 @@ static enum orl_result densify(struct call *call, const struct orl_densify_param
     const char *workspace = call->inputs[0];
     struct orl_colmap_model model = {0};
     struct orl_names photos = {0};
-    char *sparse = orl_path_join(call->log, workspace, "sparse");
-    enum orl_result result = sparse ? orl_colmap_read(call->log, sparse, &model) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_colmap_read(call->log, ORL_PATH(workspace, "sparse"), &model);
     struct orl_densify_params params = *asked;
     params.model = &model;
     ORL_THEN(result, choose_photos(call->log, workspace, &model, call->options, &photos));
@@ -52,7 +50,6 @@ static enum orl_result densify(struct call *call, const struct orl_densify_param
     ORL_THEN(result, orl_densify(call->gpu, workspace, &photos, &params, call->progress));
     orl_names_finish(&photos);
     orl_colmap_finish(&model);
-    free(sparse);
     return result;
 }
 
@@ -61,12 +58,10 @@ static enum orl_result run_densify(struct call *call)
     const struct densify_options *o = call->options;
     const struct orl_densify_part part = {o->pass, o->part.index, o->part.count};
     struct orl_densify_params params = {ORL_DENSIFY_OPTIONS(ORL_OPTION_COPY)};
-    bool whole = false;
     if (o->photos && o->exclude.count)
         return orl_fail(call->log, ORL_ERR_ARGUMENT, "--photos and --exclude exclude each other");
-    enum orl_result result = o->part.count ? command_is_whole(call, &whole) : ORL_OK;
     params.part = o->part.count ? &part : NULL;
-    return result == ORL_OK && !whole ? densify(call, &params) : result;
+    return params.part && command_is_whole(call) ? ORL_OK : densify(call, &params);
 }
 
 const struct command command_densify = {

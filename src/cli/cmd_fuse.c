@@ -19,12 +19,9 @@ static enum orl_result run_fuse(struct call *call)
     struct orl_fuse_params params = {.size = o->photographs, .masks = o->masks,
                                      .max_ram_bytes = o->max_ram_bytes,
                                      .cluster = o->part.index, .count = o->part.count};
-    bool whole = false;
     if (!o->part.count)
         return orl_fail(call->log, ORL_ERR_ARGUMENT, "fuse: --part K/N is missing");
-    enum orl_result result = command_is_whole(call, &whole);
-    return result == ORL_OK && !whole
-               ? orl_fuse_cluster(call->log, call->inputs[0], &params, call->progress) : result;
+    return command_is_whole(call) ? ORL_OK : orl_fuse_cluster(call->log, call->inputs[0], &params, call->progress);
 }
 
 const struct command command_fuse = {

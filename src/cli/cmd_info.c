@@ -72,14 +72,12 @@ static void print_choices(const struct orl_scene *scene)
 static enum orl_result print_text(const struct orl_log *log, const struct orl_scene *scene)
 {
     enum orl_result result = ORL_OK;
-    char *path = orl_path_join(log, scene->dir, "scene.json");
-    if (path && orl_path_is_file(path))
+    if (orl_path_is_file(ORL_PATH(scene->dir, "scene.json")))
         result = summary_print(log, scene->dir);
     else
         printf("workspace    %s (COLMAP's, not prepared by Oriel)\n"
                "photographs  %zu\npoints       %zu\n", scene->dir, scene->photo_count,
                scene->points.count);
-    free(path);
     double low[3], high[3];
     orl_points_bounds(&scene->points, low, high);
     if (scene->points.count)

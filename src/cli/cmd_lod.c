@@ -4,7 +4,6 @@
 
 #include "cli/command.h"
 #include "core/file.h"
-#include "core/memory.h"
 #include "oriel/scene.h"
 #include "scene/point_lod.h"
 
@@ -31,17 +30,14 @@ static enum orl_result run_lod(struct call *call)
     const struct orl_log *log = call->log;
     const char *dir = call->inputs[0];
     struct orl_view *views = NULL;
-    char *from = o->points ? orl_strdup(log, o->points) : orl_path_join(log, dir, "points.ply");
-    char *to = orl_path_join(log, dir, ORL_LOD_NAME);
+    const char *from = o->points ? o->points : ORL_PATH(dir, "points.ply"), *to = ORL_PATH(dir, ORL_LOD_NAME);
     struct orl_lod_params params = {ORL_LOD_DEFAULTS, .max_bytes = o->max_ram_bytes};
-    enum orl_result result = from && to ? orl_scene_open_photos(log, dir, &call->scene) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_scene_open_photos(log, dir, &call->scene);
     ORL_THEN(result, orl_scene_training_views(log, call->scene, &views, &params.view_count));
     params.views = views;
     ORL_THEN(result, orl_lod_write(log, call->progress, &params, from, to));
     if (result == ORL_OK && !call->common->quiet)
         result = report(log, to);
-    free(from);
-    free(to);
     free(views);
     return result;
 }

@@ -47,16 +47,14 @@ COMMAND_OPTIONS(plot_options, PLOT_OPTIONS)
 // --- the script ---
 
 // The script beside the program as it is built, or where it is installed.
-static char *find_script(const struct orl_log *log, const char *program, const char *name)
+static const char *find_script(const struct orl_log *log, const char *program, const char *name,
+                               char path[ORL_PATH_SIZE])
 {
     static const char *const folders[] = {"reports", ORL_REPORTS_FROM_BINDIR};
     int length = (int)(strrchr(program, '/') - program);
-    for (size_t i = 0; i < ORL_COUNT(folders); i++) {
-        char *path = orl_format(log, "%.*s/%s/%s.py", length, program, folders[i], name);
-        if (path && orl_path_is_file(path))
+    for (size_t i = 0; i < ORL_COUNT(folders); i++)
+        if (orl_path_is_file(orl_path_print(path, "", "%.*s/%s/%s.py", length, program, folders[i], name)))
             return path;
-        free(path);
-    }
     orl_logf(log, ORL_LOG_ERROR, "%s.py is missing beside %s and in its %s", name, program,
              ORL_REPORTS_FROM_BINDIR);
     return NULL;
@@ -109,14 +107,13 @@ static enum orl_result run_report(struct call *call)
     if (result != ORL_OK)
         return result;
     json_t *words = json_array();
-    char *program = realpath("/proc/self/exe", NULL);
-    char *script = program ? find_script(call->log, program, call->command->name) : NULL;
+    char program[ORL_PATH_SIZE], path[ORL_PATH_SIZE];
+    const char *script = realpath("/proc/self/exe", program)
+                             ? find_script(call->log, program, call->command->name, path) : NULL;
     orl_arguments_record(words, call->command->rows(), call->options, NULL);
     orl_arguments_record(words, common_option_rows(), call->common, NULL);
     terminal_finish(call->terminal);
     result = script ? become(call->log, script, program, words, call->inputs) : ORL_ERR_NOT_FOUND;
-    free(script);
-    free(program);
     json_decref(words);
     return result;
 }

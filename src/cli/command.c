@@ -127,12 +127,10 @@ enum orl_result command_held_out(const struct orl_log *log, int every, const str
     return ORL_OK;
 }
 
-enum orl_result command_is_whole(const struct call *call, bool *whole)
+bool command_is_whole(const struct call *call)
 {
-    char *path = orl_path_join(call->log, call->inputs[0], "scene.json");
-    *whole = path && orl_path_is_file(path);
-    if (*whole)
+    bool whole = orl_path_is_file(ORL_PATH(call->inputs[0], "scene.json"));
+    if (whole)
         orl_logf(call->log, ORL_LOG_INFO, "%s: a whole scene, so there is nothing left to do", call->inputs[0]);
-    free(path);
-    return path ? ORL_OK : ORL_ERR_MEMORY;
+    return whole;
 }

@@ -98,8 +98,8 @@ enum orl_result command_renderer(struct call *call,
 // ORL_ERR_ARGUMENT, logged: more than one of the options that hold photographs out is given.
 enum orl_result command_held_out(const struct orl_log *log, int every, const struct orl_names *list,
                                  struct orl_test_block block) ORL_CHECK_RESULT;
-// Sets *whole, and says so, when the scene's folder has a scene.json: a job of a scene that is whole
-// has nothing to do, and the files that it would read may be gone.
-enum orl_result command_is_whole(const struct call *call, bool *whole) ORL_CHECK_RESULT;
+// True, which it says, when the scene's folder has a scene.json: a job of a scene that is whole has
+// nothing to do, and the files that it would read may be gone.
+bool command_is_whole(const struct call *call);
 
 #endif

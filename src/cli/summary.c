@@ -3,7 +3,6 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
@@ -69,17 +68,13 @@ static void print_left_out(const json_t *list)
 enum orl_result summary_print(const struct orl_log *log, const char *dir)
 {
     json_t *root = NULL;
-    char *path = orl_path_join(log, dir, "scene.json");
-    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        char shown[ORL_TEXT_SHOWN];
-        orl_text_escape(dir, shown, sizeof shown);
-        printf("scene        %s\n", shown);
-        print_counts(root);
-        print_left_out(json_object_get(root, "left_out"));
-        print_stages(json_object_get(root, "stages"));
-    }
+    ORL_TRY(orl_json_read(log, ORL_PATH(dir, "scene.json"), &root));
+    char shown[ORL_TEXT_SHOWN];
+    orl_text_escape(dir, shown, sizeof shown);
+    printf("scene        %s\n", shown);
+    print_counts(root);
+    print_left_out(json_object_get(root, "left_out"));
+    print_stages(json_object_get(root, "stages"));
     json_decref(root);
-    free(path);
-    return result;
+    return ORL_OK;
 }
