@@ -36,7 +36,7 @@ struct densifier {
     struct orl_densify_params params; // params.sources: as many as fit
     int shrink;                       // number of times that the photographs are halved
     const struct orl_progress *progress;
-    char *images_dir, *depth_dir, *normal_dir, *confidence_dir, *sparse_dir; // owned
+    const char *workspace;
     const struct orl_colmap_model *model;
     struct orl_colmap_model own_model; // read here when the caller gives none
     struct densify_photos photos;
@@ -75,35 +75,30 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
 
 // --- files ---
 
-static char *map_path(const struct densifier *d, const char *dir, size_t photo,
-                      const struct pass *pass)
-{
-    return orl_format(d->log, "%s/%s.%s.bin", dir, densify_photo_name(&d->photos, photo),
-                      pass->kind);
-}
+#define PHOTO_PATH(d, photo) ORL_PATH((d)->workspace, "images/%s", densify_photo_name(&(d)->photos, photo))
+// maps: depth, normal or confidence
+#define MAP_PATH(d, maps, photo, pass) \
+    ORL_PATH((d)->workspace, "stereo/%s_maps/%s.%s.bin", maps, densify_photo_name(&(d)->photos, photo), (pass)->kind)
 
-static enum orl_result write_map(const struct densifier *d, const char *dir, size_t photo,
+static enum orl_result write_map(const struct densifier *d, const char *maps, size_t photo,
                                  const struct pass *pass, const struct orl_image *map)
 {
-    char *path = map_path(d, dir, photo, pass);
+    const char *path = MAP_PATH(d, maps, photo, pass);
     // A photograph's name may contain folders.
-    enum orl_result result = path ? orl_file_make_folder(d->log, path) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_colmap_map_write(d->log, path, map));
-    free(path);
-    return result;
+    ORL_TRY(orl_file_make_folder(d->log, path));
+    return orl_colmap_map_write(d->log, path, map);
 }
 
-static enum orl_result read_map(const struct densifier *d, const char *dir, size_t photo,
+static enum orl_result read_map(const struct densifier *d, const char *maps, size_t photo,
                                 const struct pass *pass, int channels, struct orl_image *map)
 {
-    char *path = map_path(d, dir, photo, pass);
-    enum orl_result result = path ? orl_colmap_map_read(d->log, path, map) : ORL_ERR_MEMORY;
+    const char *path = MAP_PATH(d, maps, photo, pass);
+    enum orl_result result = orl_colmap_map_read(d->log, path, map);
     if (result == ORL_OK && map->channels != channels) {
         result = orl_fail(d->log, ORL_ERR_FORMAT, "%s: %d channels where %d are needed", path,
                           map->channels, channels);
         orl_image_finish(map);
     }
-    free(path);
     return result;
 }
 
@@ -111,22 +106,15 @@ static enum orl_result read_map(const struct densifier *d, const char *dir, size
 static enum orl_result write_maps(const struct densifier *d, size_t photo,
                                   const struct pass *pass, const struct densify_maps *maps)
 {
-    ORL_TRY(write_map(d, d->normal_dir, photo, pass, &maps->normal));
+    ORL_TRY(write_map(d, "normal", photo, pass, &maps->normal));
     if (pass == &d->passes[d->pass_count - 1])
-        ORL_TRY(write_map(d, d->confidence_dir, photo, pass, &maps->confidence));
-    return write_map(d, d->depth_dir, photo, pass, &maps->depth);
+        ORL_TRY(write_map(d, "confidence", photo, pass, &maps->confidence));
+    return write_map(d, "depth", photo, pass, &maps->depth);
 }
 
-static enum orl_result has_maps(const struct densifier *d, size_t photo,
-                                const struct pass *pass, bool *has)
+static bool has_maps(const struct densifier *d, size_t photo, const struct pass *pass)
 {
-    char *depth = map_path(d, d->depth_dir, photo, pass);
-    char *normal = map_path(d, d->normal_dir, photo, pass);
-    enum orl_result result = depth && normal ? ORL_OK : ORL_ERR_MEMORY;
-    *has = result == ORL_OK && orl_path_is_file(depth) && orl_path_is_file(normal);
-    free(depth);
-    free(normal);
-    return result;
+    return orl_path_is_file(MAP_PATH(d, "depth", photo, pass)) && orl_path_is_file(MAP_PATH(d, "normal", photo, pass));
 }
 
 static enum orl_result read_mask(const struct densifier *d, struct densify_job *job)
@@ -134,20 +122,16 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
     const struct orl_image *picture = &job->reference->levels[0];
     if (!d->params.masks_dir)
         return ORL_OK;
-    char *path = orl_format(d->log, "%s/%s.png", d->params.masks_dir, job->name);
-    ORL_TRY_MEMORY(path);
-    enum orl_result result = ORL_OK;
-    if (orl_path_is_file(path)) {
-        result = orl_mask_read(d->log, path, &job->mask);
-        if (result == ORL_OK &&
-            (job->mask.width != picture->width || job->mask.height != picture->height))
-            result = orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,
-                              job->mask.width, job->mask.height, picture->width, picture->height);
-    } else {
+    const char *path = ORL_PATH(d->params.masks_dir, "%s.png", job->name);
+    if (!orl_path_is_file(path)) {
         orl_logf(d->log, ORL_LOG_WARNING, "%s: no mask; the whole photograph is used", path);
+        return ORL_OK;
     }
-    free(path);
-    return result;
+    ORL_TRY(orl_mask_read(d->log, path, &job->mask));
+    if (job->mask.width != picture->width || job->mask.height != picture->height)
+        return orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,
+                        job->mask.width, job->mask.height, picture->width, picture->height);
+    return ORL_OK;
 }
 
 // --- one photograph ---
@@ -232,7 +216,7 @@ static enum orl_result read_source_depth(const struct densifier *d, const struct
                                          size_t photo, int slot, struct densify_job *job)
 {
     struct orl_image *depth = &job->source_depths[slot];
-    ORL_TRY(read_map(d, d->depth_dir, photo, before, 1, depth));
+    ORL_TRY(read_map(d, "depth", photo, before, 1, depth));
     return check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
 }
 
@@ -276,12 +260,9 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo,
 {
     struct densify_maps maps = {0};
     int width, height;
-    char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, photo));
-    enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
-                                  : ORL_ERR_MEMORY;
-    free(path);
-    ORL_THEN(result, orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
-                                    ORL_PIXEL_F32));
+    ORL_TRY(orl_picture_size(d->log, PHOTO_PATH(d, photo), &width, &height));
+    enum orl_result result = orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
+                                            ORL_PIXEL_F32);
     ORL_THEN(result, orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
                                     ORL_PIXEL_F32));
     ORL_THEN(result, orl_image_init(d->log, &maps.confidence, width >> d->shrink, height >> d->shrink,
@@ -295,8 +276,8 @@ static enum orl_result read_start(const struct densifier *d, size_t photo,
                                   const struct pass *before, const struct densify_job *job,
                                   struct densify_maps *start)
 {
-    ORL_TRY(read_map(d, d->depth_dir, photo, before, 1, &start->depth));
-    ORL_TRY(read_map(d, d->normal_dir, photo, before, 3, &start->normal));
+    ORL_TRY(read_map(d, "depth", photo, before, 1, &start->depth));
+    ORL_TRY(read_map(d, "normal", photo, before, 3, &start->normal));
     ORL_TRY(check_size(d, job->name, job->reference, &start->depth));
     return check_size(d, job->name, job->reference, &start->normal);
 }
@@ -354,10 +335,7 @@ static enum orl_result process_all(struct densifier *d, const struct pass *pass)
 {
     for (size_t i = first_photo(d); i < end_photo(d); i++) {
         const char *name = densify_photo_name(&d->photos, i);
-        bool has;
-        enum orl_result result = has_maps(d, i, pass, &has);
-        if (result != ORL_OK)
-            return result;
+        bool has = has_maps(d, i, pass);
         if (orl_progress_cancelled(d->progress))
             return ORL_ERR_CANCELLED;
         orl_progress_report(d->progress, "densify", d->done, d->total, name);
@@ -365,12 +343,10 @@ static enum orl_result process_all(struct densifier *d, const struct pass *pass)
             if (!pass->geometric)
                 orl_logf(d->log, ORL_LOG_WARNING,
                          "%s: too little in common with the other photographs; no depth", name);
-            result = write_empty(d, i, pass);
+            ORL_TRY(write_empty(d, i, pass));
         } else if (!has) {
-            result = process(d, i, pass);
+            ORL_TRY(process(d, i, pass));
         }
-        if (result != ORL_OK)
-            return result;
         d->done += 1.0;
         orl_progress_report(d->progress, "densify", d->done, d->total, name);
     }
@@ -401,34 +377,29 @@ static void plan_passes(struct densifier *d)
 }
 
 // Removes the maps between the first and the last pass, which are not needed after the run.
-static enum orl_result remove_intermediate(const struct densifier *d)
+static void remove_intermediate(const struct densifier *d)
 {
-    const char *dirs[] = {d->depth_dir, d->normal_dir};
     for (size_t i = 0; i < d->photos.count; i++)
-        for (int p = 1; p < d->pass_count - 1; p++)
-            for (size_t k = 0; k < ORL_COUNT(dirs); k++) {
-                char *path = map_path(d, dirs[k], i, &d->passes[p]);
-                ORL_TRY_MEMORY(path);
-                remove(path);
-                free(path);
-            }
-    return ORL_OK;
+        for (int p = 1; p < d->pass_count - 1; p++) {
+            remove(MAP_PATH(d, "depth", i, &d->passes[p]));
+            remove(MAP_PATH(d, "normal", i, &d->passes[p]));
+        }
 }
 
 static enum orl_result process_passes(struct densifier *d)
 {
-    bool all = true, has;
-    for (size_t i = first_photo(d); i < end_photo(d) && all; i++) {
-        ORL_TRY(has_maps(d, i, &d->passes[d->pass_count - 1], &has));
-        all = has;
-    }
+    bool all = true;
+    for (size_t i = first_photo(d); i < end_photo(d) && all; i++)
+        all = has_maps(d, i, &d->passes[d->pass_count - 1]);
     enum orl_result result = ORL_OK;
     const struct orl_densify_part *part = d->params.part;
     for (int p = 0; p < d->pass_count && result == ORL_OK && !all; p++)
         if (!part || p == part->pass)
             result = process_all(d, &d->passes[p]);
     // Other parts may still read the maps between the passes.
-    return result == ORL_OK && !part ? remove_intermediate(d) : result;
+    if (result == ORL_OK && !part)
+        remove_intermediate(d);
+    return result;
 }
 
 static enum orl_result check_plans(const struct densifier *d)
@@ -450,12 +421,7 @@ static enum orl_result plan_memory(struct densifier *d)
     struct densify_budget budget;
     int width, height, asked = d->params.sources;
     for (size_t i = 0; i < d->photos.count; i++) {
-        char *path = orl_path_join(d->log, d->images_dir, densify_photo_name(&d->photos, i));
-        enum orl_result result = path ? orl_picture_size(d->log, path, &width, &height)
-                                      : ORL_ERR_MEMORY;
-        free(path);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(orl_picture_size(d->log, PHOTO_PATH(d, i), &width, &height));
         need.width = width > need.width ? width : need.width;
         need.height = height > need.height ? height : need.height;
         int side = width < height ? width : height;
@@ -481,40 +447,33 @@ static enum orl_result plan_memory(struct densifier *d)
     return ORL_OK;
 }
 
-static enum orl_result open_workspace(struct densifier *d, const char *workspace,
-                                      const struct orl_names *names)
+static enum orl_result open_workspace(struct densifier *d, const struct orl_names *names)
 {
-    d->images_dir = orl_path_join(d->log, workspace, "images");
-    d->sparse_dir = orl_path_join(d->log, workspace, "sparse");
-    d->depth_dir = orl_path_join(d->log, workspace, "stereo/depth_maps");
-    d->normal_dir = orl_path_join(d->log, workspace, "stereo/normal_maps");
-    d->confidence_dir = orl_path_join(d->log, workspace, "stereo/confidence_maps");
-    ORL_TRY_MEMORY(d->images_dir && d->sparse_dir && d->depth_dir && d->normal_dir && d->confidence_dir);
     d->model = d->params.model ? d->params.model : &d->own_model;
     if (!d->params.model)
-        ORL_TRY(orl_colmap_read(d->log, d->sparse_dir, &d->own_model));
+        ORL_TRY(orl_colmap_read(d->log, ORL_PATH(d->workspace, "sparse"), &d->own_model));
     ORL_TRY(orl_densify_photos_init(d->log, d->model, names, &d->photos));
     ORL_TRY(plan_memory(d));
     ORL_TRY(orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans));
     ORL_TRY(check_plans(d));
     if (d->params.part)
-        return orl_densify_check_maps(d->log, workspace, &d->params, d->shrink);
-    ORL_TRY(orl_densify_claim_maps(d->log, workspace, &d->photos, &d->params, d->shrink));
-    ORL_TRY(orl_dir_make(d->log, d->depth_dir));
-    ORL_TRY(orl_dir_make(d->log, d->normal_dir));
-    return orl_dir_make(d->log, d->confidence_dir);
+        return orl_densify_check_maps(d->log, d->workspace, &d->params, d->shrink);
+    ORL_TRY(orl_densify_claim_maps(d->log, d->workspace, &d->photos, &d->params, d->shrink));
+    ORL_TRY(orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/depth_maps")));
+    ORL_TRY(orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/normal_maps")));
+    return orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/confidence_maps"));
 }
 
 // Two densifiers in one workspace would overwrite each other's maps, but for parts.
-static enum orl_result lock_workspace(struct densifier *d, const char *workspace)
+static enum orl_result lock_workspace(struct densifier *d)
 {
     bool taken;
     enum orl_result result = d->params.part
-                                 ? orl_lock_shared(d->log, workspace, &d->lock_fd, &taken)
-                                 : orl_lock(d->log, workspace, &d->lock_fd, &taken);
+                                 ? orl_lock_shared(d->log, d->workspace, &d->lock_fd, &taken)
+                                 : orl_lock(d->log, d->workspace, &d->lock_fd, &taken);
     return result == ORL_OK && taken
                ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here",
-                          workspace)
+                          d->workspace)
                : result;
 }
 
@@ -525,20 +484,14 @@ static void close_densifier(struct densifier *d)
     free(d->plans);
     orl_densify_photos_finish(&d->photos);
     orl_colmap_finish(&d->own_model);
-    free(d->images_dir);
-    free(d->sparse_dir);
-    free(d->depth_dir);
-    free(d->normal_dir);
-    free(d->confidence_dir);
     orl_unlock(&d->lock_fd);
 }
 
-static enum orl_result open_densifier(struct densifier *d, const char *workspace,
-                                      const struct orl_names *photos)
+static enum orl_result open_densifier(struct densifier *d, const struct orl_names *photos)
 {
     ORL_TRY(check_params(d->log, &d->params));
-    ORL_TRY(lock_workspace(d, workspace));
-    return open_workspace(d, workspace, photos);
+    ORL_TRY(lock_workspace(d));
+    return open_workspace(d, photos);
 }
 
 enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
@@ -547,10 +500,11 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_progress *progress)
 {
     struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
-                          .progress = progress, .lock_fd = -1};
-    enum orl_result result = open_densifier(&d, workspace, photos);
+                          .progress = progress, .workspace = workspace, .lock_fd = -1};
+    const char *images = ORL_PATH(workspace, "images");
+    enum orl_result result = open_densifier(&d, photos);
     ORL_THEN(result, orl_densify_device_create(gpu, &d.params, &d.device));
-    ORL_THEN(result, orl_densify_cache_create(d.log, &d.photos, d.images_dir, &d.cache));
+    ORL_THEN(result, orl_densify_cache_create(d.log, &d.photos, images, &d.cache));
     plan_passes(&d);
     ORL_THEN(result, process_passes(&d));
     close_densifier(&d);
@@ -561,8 +515,8 @@ enum orl_result orl_densify_begin(const struct orl_log *log, const char *workspa
                                   const struct orl_names *photos,
                                   const struct orl_densify_params *params)
 {
-    struct densifier d = {.log = log, .params = *params, .lock_fd = -1};
-    enum orl_result result = open_densifier(&d, workspace, photos);
+    struct densifier d = {.log = log, .params = *params, .workspace = workspace, .lock_fd = -1};
+    enum orl_result result = open_densifier(&d, photos);
     close_densifier(&d);
     return result;
 }

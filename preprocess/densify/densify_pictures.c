@@ -154,13 +154,9 @@ enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
     struct cache_entry *entry = &cache->entries[photo];
     enum orl_result result = ORL_OK;
     if (!entry->pyramid.count) {
-        char *path = orl_path_join(cache->log, cache->images_dir,
-                                   densify_photo_name(cache->photos, photo));
-        result = path ? orl_densify_pyramid_read(cache->log, path,
-                                                 &cache->photos->views[photo].camera,
-                                                 &entry->pyramid)
-                      : ORL_ERR_MEMORY;
-        free(path);
+        result = orl_densify_pyramid_read(
+            cache->log, ORL_PATH(cache->images_dir, "%s", densify_photo_name(cache->photos, photo)),
+            &cache->photos->views[photo].camera, &entry->pyramid);
         cache->bytes += pyramid_bytes(&entry->pyramid);
     }
     entry->turn = cache->turn;

@@ -1,13 +1,11 @@
 // stereo/densify.json: the inputs and settings of the maps beside it, so that a run with others
 // makes the maps again.
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <xxhash.h>
 
 #include "core/json.h"
-#include "core/memory.h"
 #include "preprocess/densify/densify_internal.h"
 
 static const char *const map_dirs[] = {"stereo/depth_maps", "stereo/normal_maps",
@@ -28,42 +26,34 @@ static enum orl_result add_file(struct digest *digest, const char *dir, const ch
                                 const char *suffix)
 {
     uint64_t hash = 0;
-    enum orl_result result = ORL_OK;
-    char *path = orl_format(digest->log, "%s/%s%s", dir, name, suffix);
-    ORL_TRY_MEMORY(path);
-    if (orl_path_is_file(path))
-        result = orl_file_hash(digest->log, path, &hash);
+    const char *path = ORL_PATH(dir, "%s%s", name, suffix);
+    enum orl_result result = orl_path_is_file(path) ? orl_file_hash(digest->log, path, &hash) : ORL_OK;
     add_text(digest, name);
     XXH3_64bits_update(digest->state, &hash, sizeof hash);
-    free(path);
     return result;
 }
 
 static enum orl_result add_model(struct digest *digest, const char *workspace)
 {
     static const char *const names[] = {"cameras", "images", "points3D"};
-    char *dir = orl_path_join(digest->log, workspace, "sparse");
-    enum orl_result result = dir ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(names); i++) {
-        result = add_file(digest, dir, names[i], ".bin");
-        ORL_THEN(result, add_file(digest, dir, names[i], ".txt"));
+    const char *dir = ORL_PATH(workspace, "sparse");
+    for (size_t i = 0; i < ORL_COUNT(names); i++) {
+        ORL_TRY(add_file(digest, dir, names[i], ".bin"));
+        ORL_TRY(add_file(digest, dir, names[i], ".txt"));
     }
-    free(dir);
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result add_pictures(struct digest *digest, const char *workspace,
                                     const struct densify_photos *photos, const char *masks_dir)
 {
-    char *dir = orl_path_join(digest->log, workspace, "images");
-    enum orl_result result = dir ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < photos->count; i++) {
-        result = add_file(digest, dir, densify_photo_name(photos, i), "");
-        if (result == ORL_OK && masks_dir)
-            result = add_file(digest, masks_dir, densify_photo_name(photos, i), ".png");
+    const char *dir = ORL_PATH(workspace, "images");
+    for (size_t i = 0; i < photos->count; i++) {
+        ORL_TRY(add_file(digest, dir, densify_photo_name(photos, i), ""));
+        if (masks_dir)
+            ORL_TRY(add_file(digest, masks_dir, densify_photo_name(photos, i), ".png"));
     }
-    free(dir);
-    return result;
+    return ORL_OK;
 }
 
 static json_t *make_settings(const struct orl_densify_params *params, int shrink)
@@ -97,49 +87,36 @@ static enum orl_result make_record(const struct orl_log *log, const char *worksp
     return result;
 }
 
-// Sets *any when a photograph of this run has a map of any kind.
-static enum orl_result find_maps(const struct orl_log *log, const char *workspace,
-                                 const struct densify_photos *photos, bool *any)
+// True when a photograph of this run has a map of any kind.
+static bool has_maps(const char *workspace, const struct densify_photos *photos)
 {
     static const char *const kinds[] = {"photometric", "geometric"};
-    *any = false;
     for (size_t i = 0; i < photos->count; i++)
-        for (size_t k = 0; k < ORL_COUNT(kinds) * ORL_COUNT(map_dirs); k++) {
-            char *path = orl_format(log, "%s/%s/%s.%s.bin", workspace, map_dirs[k / 2],
-                                    densify_photo_name(photos, i), kinds[k % 2]);
-            ORL_TRY_MEMORY(path);
-            *any = *any || orl_path_is_file(path);
-            free(path);
-        }
-    return ORL_OK;
+        for (size_t k = 0; k < ORL_COUNT(kinds) * ORL_COUNT(map_dirs); k++)
+            if (orl_path_is_file(ORL_PATH(workspace, "%s/%s.%s.bin", map_dirs[k / 2], densify_photo_name(photos, i),
+                                          kinds[k % 2])))
+                return true;
+    return false;
 }
 
 static enum orl_result remove_maps(const struct orl_log *log, const char *workspace)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(map_dirs); i++) {
-        char *path = orl_path_join(log, workspace, map_dirs[i]);
-        result = path ? orl_dir_remove(log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    return result;
+    for (size_t i = 0; i < ORL_COUNT(map_dirs); i++)
+        ORL_TRY(orl_dir_remove(log, ORL_PATH(workspace, "%s", map_dirs[i])));
+    return ORL_OK;
 }
 
 // Maps must be removed and written only below the workspace, so links are refused.
 static enum orl_result refuse_links(const struct orl_log *log, const char *workspace)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i <= ORL_COUNT(map_dirs); i++) {
+    for (size_t i = 0; i <= ORL_COUNT(map_dirs); i++) {
         struct stat st;
-        char *path = orl_path_join(log, workspace, i ? map_dirs[i - 1] : "stereo");
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (lstat(path, &st) == 0 && !S_ISDIR(st.st_mode))
-            result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: a link or file in place of the folder of "
-                              "maps, which is not followed; remove it", path);
-        free(path);
+        const char *path = ORL_PATH(workspace, "%s", i ? map_dirs[i - 1] : "stereo");
+        if (lstat(path, &st) == 0 && !S_ISDIR(st.st_mode))
+            return orl_fail(log, ORL_ERR_ARGUMENT, "%s: a link or file in place of the folder of "
+                            "maps, which is not followed; remove it", path);
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *workspace,
@@ -147,17 +124,11 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
                                        const struct orl_densify_params *params, int shrink)
 {
     json_t *record = NULL, *old = NULL;
-    bool any = false;
-    char *stereo = orl_path_join(log, workspace, "stereo");
-    char *path = orl_path_join(log, workspace, "stereo/densify.json");
-    enum orl_result result = stereo && path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        goto end;
-    if ((result = refuse_links(log, workspace)) != ORL_OK ||
-        (result = make_record(log, workspace, photos, params, shrink, &record)) != ORL_OK ||
-        (result = find_maps(log, workspace, photos, &any)) != ORL_OK)
-        goto end;
-    bool ours = orl_path_is_file(path);
+    const char *stereo = ORL_PATH(workspace, "stereo"), *path = ORL_PATH(workspace, "stereo/densify.json");
+    ORL_TRY(refuse_links(log, workspace));
+    ORL_TRY(make_record(log, workspace, photos, params, shrink, &record));
+    bool any = has_maps(workspace, photos), ours = orl_path_is_file(path);
+    enum orl_result result = ORL_OK;
     if (any && !ours) {
         result = orl_fail(log, ORL_ERR_ARGUMENT,
                           "%s/depth_maps: these maps were not made by oriel densify, or by one "
@@ -179,8 +150,6 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
 end:
     json_decref(record);
     json_decref(old);
-    free(stereo);
-    free(path);
     return result;
 }
 
@@ -188,8 +157,8 @@ enum orl_result orl_densify_check_maps(const struct orl_log *log, const char *wo
                                        const struct orl_densify_params *params, int shrink)
 {
     json_t *record = NULL, *settings = make_settings(params, shrink);
-    char *path = orl_path_join(log, workspace, "stereo/densify.json");
-    enum orl_result result = path && settings ? refuse_links(log, workspace) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(workspace, "stereo/densify.json");
+    enum orl_result result = settings ? refuse_links(log, workspace) : ORL_ERR_MEMORY;
     bool same = result == ORL_OK && orl_path_is_file(path) &&
                 orl_json_read(NULL, path, &record) == ORL_OK &&
                 json_integer_value(json_object_get(record, "version")) == ORL_DENSIFY_VERSION &&
@@ -200,6 +169,5 @@ enum orl_result orl_densify_check_maps(const struct orl_log *log, const char *wo
                           path);
     json_decref(record);
     json_decref(settings);
-    free(path);
     return result;
 }
