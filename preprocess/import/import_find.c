@@ -141,25 +141,18 @@ enum orl_result orl_import_find(const struct orl_log *log, const char *dir, cons
 {
     struct orl_names names = {0};
     orl_import_found_finish(found);
-    char *exact = orl_path_join(log, dir, name);
-    ORL_TRY_MEMORY(exact);
-    bool there = orl_path_is_file(exact) && is_picture(name);
-    free(exact);
-    if (there)
+    if (orl_path_is_file(ORL_PATH(dir, "%s", name)) && is_picture(name))
         return set(log, dir, name, IMPORT_PICTURE, found);
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && found->kind == IMPORT_NOTHING && i < 2 * names.count; i++) {
         const char *file = names.items[i % names.count];
         if (i < names.count ? !belongs_exactly(file, name) : !belongs(file, name))
             continue;
-        char *path = orl_path_join(log, dir, file);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(path))
+        const char *path = ORL_PATH(dir, "%s", file);
+        if (orl_path_is_dir(path))
             result = look_inside(log, path, role, found);
         else if (orl_path_is_file(path) && (is_picture(file) || orl_video_is(file))) // no link to nowhere
             result = set(log, dir, file, orl_video_is(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
-        free(path);
     }
     if (result == ORL_OK && loosely && found->kind == IMPORT_NOTHING)
         result = look_loosely(log, dir, name, &names, found);
@@ -177,17 +170,12 @@ static enum orl_result find_below(const struct import_job *job, const char *dir,
                                   struct import_found *found)
 {
     const char *base = orl_path_name(path);
-    char *folder = *path == '/' ? orl_format(job->log, "%.*s", (int)(base - path), path)
-                                : orl_format(job->log, "%s/%.*s", dir, (int)(base - path), path);
-    enum orl_result result = folder ? ORL_OK : ORL_ERR_MEMORY;
-    if (folder && orl_path_is_dir(folder))
-        result = orl_import_find(job->log, folder, base, "video", false, found);
-    free(folder);
-    return result;
+    const char *folder = ORL_PATH(*path == '/' ? "" : dir, "%.*s", (int)(base - path), path);
+    return orl_path_is_dir(folder) ? orl_import_find(job->log, folder, base, "video", false, found) : ORL_OK;
 }
 
-// Sets *dir to the first folder beside the cameras that has the first camera's picture, or leaves it.
-static enum orl_result look_for_folder(const struct import_job *job, char **dir)
+// Sets `dir` to the first folder beside the cameras that has the first camera's picture, else to the cameras' folder.
+static enum orl_result look_for_folder(const struct import_job *job, char dir[ORL_PATH_SIZE])
 {
     const struct orl_log *log = job->log;
     const char *folder = job->known.folder, *name = job->known.model.images[0].name;
@@ -197,16 +185,11 @@ static enum orl_result look_for_folder(const struct import_job *job, char **dir)
     bool here = found.kind != IMPORT_NOTHING;
     if (result == ORL_OK && !here)
         result = orl_dir_list(log, folder, &names);
-    for (size_t i = 0; result == ORL_OK && !here && !*dir && i < names.count; i++) {
-        char *sub = orl_path_join(log, folder, names.items[i]);
-        result = sub ? ORL_OK : ORL_ERR_MEMORY;
-        if (sub && orl_path_is_dir(sub))
-            result = find_below(job, sub, name, &found);
-        if (result == ORL_OK && found.kind != IMPORT_NOTHING)
-            *dir = sub;
-        else
-            free(sub);
-    }
+    for (size_t i = 0; result == ORL_OK && found.kind == IMPORT_NOTHING && i < names.count; i++)
+        if (orl_path_is_dir(orl_path_print(dir, folder, "%s", names.items[i])))
+            result = find_below(job, dir, name, &found);
+    if (here || found.kind == IMPORT_NOTHING)
+        orl_path_print(dir, "", "%s", folder);
     orl_import_found_finish(&found);
     orl_names_finish(&names);
     return result;
@@ -214,28 +197,20 @@ static enum orl_result look_for_folder(const struct import_job *job, char **dir)
 
 // Chooses the folder of pictures: the given one, else images/ beside the cameras, or beside sparse/ where
 // a model in it was named, else another one beside the cameras, else the cameras' folder.
-static enum orl_result choose_folder(const struct import_job *job, char **dir)
+static enum orl_result choose_folder(const struct import_job *job, char dir[ORL_PATH_SIZE])
 {
     static const char *const places[] = {"images", "../images", "../../images"};
     const char *told = job->params->images_dir;
     size_t tries = job->known.pictures ? 1 : ORL_COUNT(places); // COLMAP's models name no paths
-    *dir = told ? orl_strdup(job->log, told) : NULL;
-    for (size_t i = 0; !told && i < tries && !*dir; i++) {
-        *dir = orl_path_join(job->log, job->known.folder, places[i]);
-        ORL_TRY_MEMORY(*dir);
-        if (!orl_path_is_dir(*dir)) {
-            free(*dir);
-            *dir = NULL;
-        }
-    }
-    enum orl_result result = *dir ? ORL_OK : look_for_folder(job, dir);
-    if (result == ORL_OK && !*dir)
-        *dir = orl_strdup(job->log, job->known.folder);
-    if (result != ORL_OK || !*dir)
-        return result == ORL_OK ? ORL_ERR_MEMORY : result;
-    return orl_path_is_dir(*dir) ? ORL_OK
-                                 : orl_fail(job->log, ORL_ERR_NOT_FOUND,
-                                            "--images %s: no such folder", *dir);
+    bool chosen = told != NULL;
+    if (told)
+        orl_path_print(dir, "", "%s", told);
+    for (size_t i = 0; !chosen && i < tries; i++)
+        chosen = orl_path_is_dir(orl_path_print(dir, job->known.folder, "%s", places[i]));
+    if (!chosen)
+        ORL_TRY(look_for_folder(job, dir));
+    return orl_path_is_dir(dir) ? ORL_OK
+                                : orl_fail(job->log, ORL_ERR_NOT_FOUND, "--images %s: no such folder", dir);
 }
 
 // True when no other camera's name has the same last part.
@@ -415,21 +390,19 @@ static enum orl_result find_companion(const struct import_job *job, const char *
                                       struct import_found *found)
 {
     const char *base = orl_path_name(name);
-    char *inside = orl_format(job->log, "%s/%.*s", dir, (int)(base - name), name);
-    char *flat = orl_strdup(job->log, name);
-    for (char *c = flat; c && *c; c++)
+    const char *inside = ORL_PATH(dir, "%.*s", (int)(base - name), name);
+    char flat[ORL_PATH_SIZE];
+    orl_path_print(flat, "", "%s", name);
+    for (char *c = flat; *c; c++)
         if (*c == '/')
             *c = '_';
-    enum orl_result result = inside && flat ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && base != name && orl_path_is_dir(inside))
-        result = orl_import_find(job->log, inside, base, role, true, found);
-    if (result == ORL_OK && base != name && found->kind == IMPORT_NOTHING)
-        result = orl_import_find(job->log, dir, flat, role, true, found);
-    if (result == ORL_OK && found->kind == IMPORT_NOTHING && is_only_name(job, base))
-        result = orl_import_find(job->log, dir, base, role, true, found);
-    free(inside);
-    free(flat);
-    return result;
+    if (base != name && orl_path_is_dir(inside))
+        ORL_TRY(orl_import_find(job->log, inside, base, role, true, found));
+    if (base != name && found->kind == IMPORT_NOTHING)
+        ORL_TRY(orl_import_find(job->log, dir, flat, role, true, found));
+    if (found->kind == IMPORT_NOTHING && is_only_name(job, base))
+        ORL_TRY(orl_import_find(job->log, dir, base, role, true, found));
+    return ORL_OK;
 }
 
 // Finds masks or backgrounds, of which every camera must have one.
@@ -477,17 +450,16 @@ static enum orl_result find_stated_masks(struct import_job *job)
 
 enum orl_result orl_import_find_all(struct import_job *job)
 {
-    char *dir = NULL;
-    enum orl_result result = choose_folder(job, &dir);
-    ORL_THEN(result, find_pictures(job, dir));
-    ORL_THEN(result, name_views(job));
-    ORL_THEN(result, hold_out(job));
-    if (result == ORL_OK && job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence)
-        result = find_stated_masks(job);
-    if (result == ORL_OK && job->params->masks_dir)
-        result = find_companions(job, "masks", job->params->masks_dir, "masks");
-    if (result == ORL_OK && job->params->background)
-        result = find_companions(job, "background", job->params->background, "background");
-    free(dir);
-    return result;
+    char dir[ORL_PATH_SIZE];
+    ORL_TRY(choose_folder(job, dir));
+    ORL_TRY(find_pictures(job, dir));
+    ORL_TRY(name_views(job));
+    ORL_TRY(hold_out(job));
+    if (job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence)
+        ORL_TRY(find_stated_masks(job));
+    if (job->params->masks_dir)
+        ORL_TRY(find_companions(job, "masks", job->params->masks_dir, "masks"));
+    if (job->params->background)
+        ORL_TRY(find_companions(job, "background", job->params->background, "background"));
+    return ORL_OK;
 }

@@ -10,8 +10,7 @@ enum orl_result orl_import_frames_open(const struct import_job *job, const struc
 {
     *frames = (struct import_frames){.step = 1};
     frames->temporary = found->kind == IMPORT_CLIP;
-    frames->dir = frames->temporary ? orl_import_path(job, "clip.tmp")
-                                    : orl_strdup(job->log, found->path);
+    frames->dir = orl_strdup(job->log, frames->temporary ? ORL_PATH(job->dir, "clip.tmp") : found->path);
     ORL_TRY_MEMORY(frames->dir);
     enum orl_result result = ORL_OK;
     if (frames->temporary) {
@@ -33,11 +32,6 @@ enum orl_result orl_import_frames_open(const struct import_job *job, const struc
         orl_import_frames_close(job, frames);
     }
     return result;
-}
-
-char *orl_import_frames_path(const struct orl_log *log, const struct import_frames *frames, size_t i)
-{
-    return orl_path_join(log, frames->dir, frames->names.items[frames->first + i * frames->step]);
 }
 
 void orl_import_frames_close(const struct import_job *job, struct import_frames *frames)

@@ -46,11 +46,6 @@ struct import_job {
     bool said_endless;  // see orl_cones_mesh
 };
 
-// --- import_scene.c: the folder ---
-
-// "JOB->dir/name", released with free().
-char *orl_import_path(const struct import_job *job, const char *format, ...) ORL_PRINTF(2, 3);
-
 // --- import_find.c ---
 
 // Looks in `dir` for the files of the camera `name`: a picture of this name with any extension; a
@@ -78,8 +73,9 @@ struct import_frames {
 enum orl_result orl_import_frames_open(const struct import_job *job, const struct import_found *found,
                                        const struct orl_frame_range *range,
                                        struct import_frames *frames) ORL_CHECK_RESULT;
-// Path of picture i of frames->count, released with free().
-char *orl_import_frames_path(const struct orl_log *log, const struct import_frames *frames, size_t i);
+// Path of picture i of frames->count (ORL_PATH).
+#define IMPORT_FRAME_PATH(frames, i) \
+    ORL_PATH((frames)->dir, "%s", (frames)->names.items[(frames)->first + (i) * (frames)->step])
 void orl_import_frames_close(const struct import_job *job, struct import_frames *frames);
 
 // --- import_target.c ---

@@ -1,6 +1,5 @@
 // Undistorted photographs, silhouettes and backgrounds of a single picture or a sequence.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -21,11 +20,10 @@ static const struct orl_colmap_camera *camera_of(const struct import_job *job,
 
 // Path "images/NAME", or "frames/NNNNN/images/NAME" for frame >= 0. Makes its folder.
 static enum orl_result output_path(const struct import_job *job, const char *folder, int frame,
-                                   const char *name, const char *ending, char **path)
+                                   const char *name, const char *ending, char path[ORL_PATH_SIZE])
 {
-    *path = frame < 0 ? orl_import_path(job, "%s/%s%s", folder, name, ending)
-                      : orl_import_path(job, "frames/%05d/%s/%s%s", frame, folder, name, ending);
-    return *path ? orl_file_make_folder(job->log, *path) : ORL_ERR_MEMORY;
+    const char *dir = frame < 0 ? job->dir : ORL_PATH(job->dir, "frames/%05d", frame);
+    return orl_file_make_folder(job->log, orl_path_print(path, dir, "%s/%s%s", folder, name, ending));
 }
 
 // --- writing ---
@@ -57,17 +55,14 @@ static enum orl_result write_photo(const struct import_job *job, const struct im
                                    int frame, const char *path, const struct orl_image *picture)
 {
     struct orl_image image = {0};
-    char *out = NULL;
-    enum orl_result result = output_path(job, "images", frame, view->name, "", &out);
-    if (result == ORL_OK && may_copy(job, view)) {
-        result = orl_file_copy(job->log, path, out);
-    } else if (result == ORL_OK) {
-        result = undistort(job, view, path, picture, &image);
-        ORL_THEN(result, orl_picture_is_png(view->name) ? orl_png_write(job->log, out, &image)
-                                            : orl_jpeg_write(job->log, out, &image, JPEG_QUALITY, NULL));
-    }
+    char out[ORL_PATH_SIZE];
+    ORL_TRY(output_path(job, "images", frame, view->name, "", out));
+    if (may_copy(job, view))
+        return orl_file_copy(job->log, path, out);
+    enum orl_result result = undistort(job, view, path, picture, &image);
+    ORL_THEN(result, orl_picture_is_png(view->name) ? orl_png_write(job->log, out, &image)
+                                                    : orl_jpeg_write(job->log, out, &image, JPEG_QUALITY, NULL));
     orl_image_finish(&image);
-    free(out);
     return result;
 }
 
@@ -76,18 +71,17 @@ static enum orl_result write_linear(const struct import_job *job, const struct i
 {
     struct orl_picture_info info;
     struct orl_image light = {0}, image = {0};
-    char *out = NULL;
+    char out[ORL_PATH_SIZE];
     const char *path = view->picture.path;
-    enum orl_result result = orl_picture_inspect(job->log, path, &info);
-    if (result != ORL_OK || info.bits <= 8 || view->composed)
-        return result;
-    result = output_path(job, "images_linear", -1, view->name, ".exr", &out);
-    ORL_THEN(result, orl_picture_read_linear(job->log, path, &light));
+    ORL_TRY(orl_picture_inspect(job->log, path, &info));
+    if (info.bits <= 8 || view->composed)
+        return ORL_OK;
+    ORL_TRY(output_path(job, "images_linear", -1, view->name, ".exr", out));
+    enum orl_result result = orl_picture_read_linear(job->log, path, &light);
     ORL_THEN(result, undistort(job, view, path, &light, &image));
     ORL_THEN(result, orl_linear_write(job->log, out, &image));
     orl_image_finish(&light);
     orl_image_finish(&image);
-    free(out);
     return result;
 }
 
@@ -96,9 +90,9 @@ static enum orl_result write_mask(const struct import_job *job, const struct imp
                                   int frame, const char *path, const struct orl_image *mask)
 {
     struct orl_image image = {0};
-    char *out = NULL;
-    enum orl_result result = output_path(job, "masks", frame, view->name, ".png", &out);
-    ORL_THEN(result, undistort(job, view, path, mask, &image));
+    char out[ORL_PATH_SIZE];
+    ORL_TRY(output_path(job, "masks", frame, view->name, ".png", out));
+    enum orl_result result = undistort(job, view, path, mask, &image);
     size_t count = result == ORL_OK ? orl_image_bytes(&image) : 0;
     for (size_t i = 0; i < count; i++) // resampling makes intermediate values
         image.u8[i] = image.u8[i] >= 128;
@@ -107,7 +101,6 @@ static enum orl_result write_mask(const struct import_job *job, const struct imp
         result = orl_png_write(job->log, out, &image);
     }
     orl_image_finish(&image);
-    free(out);
     return result;
 }
 
@@ -134,9 +127,7 @@ static enum orl_result learn_background(const struct import_job *job,
         return add_background(job, view->background.path, background);
     enum orl_result result = orl_import_frames_open(job, &view->background, &all, &frames);
     for (size_t i = 0; result == ORL_OK && i < frames.count; i++) {
-        char *path = orl_import_frames_path(job->log, &frames, i);
-        result = path ? add_background(job, path, background) : ORL_ERR_MEMORY;
-        free(path);
+        result = add_background(job, IMPORT_FRAME_PATH(&frames, i), background);
         if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;
     }
@@ -149,10 +140,10 @@ static enum orl_result write_background(const struct import_job *job,
                                         const struct orl_background *background)
 {
     struct orl_image mean = {0}, image = {0};
-    char *out = NULL;
+    char out[ORL_PATH_SIZE];
     const struct orl_image *from = &background->mean;
-    enum orl_result result = output_path(job, "background", -1, view->name, ".png", &out);
-    ORL_THEN(result, orl_image_init(job->log, &mean, from->width, from->height, 3, ORL_PIXEL_U8));
+    ORL_TRY(output_path(job, "background", -1, view->name, ".png", out));
+    enum orl_result result = orl_image_init(job->log, &mean, from->width, from->height, 3, ORL_PIXEL_U8);
     size_t count = result == ORL_OK ? orl_image_bytes(&mean) : 0;
     for (size_t i = 0; i < count; i++)
         mean.u8[i] = (uint8_t)(from->f32[i] + 0.5f);
@@ -160,7 +151,6 @@ static enum orl_result write_background(const struct import_job *job,
     ORL_THEN(result, orl_png_write(job->log, out, &image));
     orl_image_finish(&mean);
     orl_image_finish(&image);
-    free(out);
     return result;
 }
 
@@ -328,24 +318,19 @@ static enum orl_result import_time_steps(struct import_job *job, struct import_v
                                          const struct import_frames *masks,
                                          const struct orl_background *background)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < frames->count; i++) {
+    for (size_t i = 0; i < frames->count; i++) {
         orl_progress_report(job->progress, "import",
                             (double)(view - job->views) + (double)i / (double)frames->count,
                             (double)job->view_count, view->name);
-        char *path = orl_import_frames_path(job->log, frames, i);
-        char *mask = masks->count > i ? orl_import_frames_path(job->log, masks, i) : NULL;
+        const char *path = IMPORT_FRAME_PATH(frames, i);
+        const char *mask = masks->count > i ? IMPORT_FRAME_PATH(masks, i) : NULL;
         if (orl_progress_cancelled(job->progress))
-            result = ORL_ERR_CANCELLED;
-        else if (!path || (masks->count > i && !mask))
-            result = ORL_ERR_MEMORY;
-        else if (i == 0)
-            result = settle_camera(job, view, path);
-        ORL_THEN(result, import_picture(job, view, (int)i, path, mask, background));
-        free(path);
-        free(mask);
+            return ORL_ERR_CANCELLED;
+        if (i == 0)
+            ORL_TRY(settle_camera(job, view, path));
+        ORL_TRY(import_picture(job, view, (int)i, path, mask, background));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result import_sequence(struct import_job *job, struct import_view *view,
@@ -406,17 +391,12 @@ static enum orl_result import_view(struct import_job *job, struct import_view *v
 // Removes frames that some cameras lack.
 static enum orl_result drop_surplus(const struct import_job *job)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = job->frame_count; result == ORL_OK; i++) {
-        char *path = orl_import_path(job, "frames/%05zu", i);
-        bool there = path && orl_path_is_dir(path);
-        if (there)
-            result = orl_dir_remove(job->log, path);
-        free(path);
-        if (!there)
-            break;
+    for (size_t i = job->frame_count;; i++) {
+        const char *path = ORL_PATH(job->dir, "frames/%05zu", i);
+        if (!orl_path_is_dir(path))
+            return ORL_OK;
+        ORL_TRY(orl_dir_remove(job->log, path));
     }
-    return result;
 }
 
 static void say_unusual(const struct import_job *job)
@@ -427,10 +407,9 @@ static void say_unusual(const struct import_job *job)
         gain_maps += job->views[i].gain_map;
         masked += job->views[i].masked;
     }
-    char *masks = orl_path_join(NULL, job->known.folder, "masks");
-    if (!masked && masks && orl_path_is_dir(masks))
+    const char *masks = ORL_PATH(job->known.folder, "masks");
+    if (!masked && orl_path_is_dir(masks))
         orl_logf(job->log, ORL_LOG_INFO, "%s is not used: --masks names a folder of masks", masks);
-    free(masks);
     if (gain_maps)
         orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, job->view_count);
     if (count)

@@ -1,6 +1,5 @@
 // The scene's files besides the photographs: sparse model, points, mesh, manifest.
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,17 +14,6 @@
 #include "oriel/points.h"
 #include "scene/free_space.h"
 #include "scene/radius_limits.h"
-
-char *orl_import_path(const struct import_job *job, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    char *name = orl_vformat(job->log, format, args);
-    va_end(args);
-    char *path = name ? orl_path_join(job->log, job->dir, name) : NULL;
-    free(name);
-    return path;
-}
 
 // --- sparse/ ---
 
@@ -53,9 +41,8 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
                                      .point_count = points->model->point_count};
     model.cameras = orl_array(job->log, known->camera_count + job->view_count, sizeof *model.cameras);
     model.images = orl_array(job->log, job->view_count, sizeof *model.images);
-    char *dir = orl_import_path(job, "%s", name);
-    enum orl_result result = model.cameras && model.images && dir ? orl_dir_make(job->log, dir)
-                                                                  : ORL_ERR_MEMORY;
+    const char *dir = ORL_PATH(job->dir, "%s", name);
+    enum orl_result result = model.cameras && model.images ? orl_dir_make(job->log, dir) : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && !for_database && i < known->camera_count; i++)
         if (job->targets[i].width) // true when the camera has a picture
             model.cameras[model.camera_count++] =
@@ -79,7 +66,6 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
     ORL_THEN(result, orl_colmap_write(job->log, dir, &model));
     free(model.cameras);
     free(model.images);
-    free(dir);
     return result;
 }
 
@@ -123,23 +109,17 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
 enum orl_result orl_import_write_points(const struct import_job *job, size_t *count)
 {
     struct orl_points points;
-    char *path = orl_import_path(job, "points.ply");
-    enum orl_result result = !path ? ORL_ERR_MEMORY
-                             : job->params->points_file
-                                 ? orl_points_read_from(job->log, job->params->points_file,
-                                                        job->known.origin, &points)
-                                 : orl_points_init(job->log, &points, 0);
-    if (result == ORL_OK) {
-        if (job->params->points_file && !points.count)
-            result = orl_fail(job->log, ORL_ERR_DATA, "%s: no usable points",
-                              job->params->points_file);
-        else if (points.count)
-            result = complete_points(job, &points);
-        ORL_THEN(result, orl_points_write(job->log, path, &points, false));
-        *count = points.count;
-        orl_points_finish(&points);
-    }
-    free(path);
+    const char *file = job->params->points_file;
+    ORL_TRY(file ? orl_points_read_from(job->log, file, job->known.origin, &points)
+                 : orl_points_init(job->log, &points, 0));
+    enum orl_result result = ORL_OK;
+    if (file && !points.count)
+        result = orl_fail(job->log, ORL_ERR_DATA, "%s: no usable points", file);
+    else if (points.count)
+        result = complete_points(job, &points);
+    ORL_THEN(result, orl_points_write(job->log, ORL_PATH(job->dir, "points.ply"), &points, false));
+    *count = points.count;
+    orl_points_finish(&points);
     return result;
 }
 
@@ -149,18 +129,16 @@ enum orl_result orl_import_write_points(const struct import_job *job, size_t *co
 static enum orl_result read_silhouettes(const struct import_job *job, const char *folder,
                                         struct orl_silhouette *silhouettes, size_t *count)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+    for (size_t i = 0; i < job->view_count; i++) {
         if (job->views[i].test || !job->views[i].masked)
             continue;
         struct orl_silhouette *one = &silhouettes[*count];
-        char *path = orl_import_path(job, "%smasks/%s.png", folder, job->views[i].name);
+        const char *path = ORL_PATH(job->dir, "%smasks/%s.png", folder, job->views[i].name);
         one->view = view_of(job, i);
-        result = path ? orl_picture_read(job->log, path, 1, &one->mask) : ORL_ERR_MEMORY;
-        *count += result == ORL_OK;
-        free(path);
+        ORL_TRY(orl_picture_read(job->log, path, 1, &one->mask));
+        ++*count;
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result carve_mesh(struct import_job *job, const char *folder,
@@ -191,10 +169,8 @@ static enum orl_result write_mesh(struct import_job *job, const char *folder,
                                                : carve_mesh(job, folder, &mesh);
     if (result == ORL_OK && !mesh.normal)
         result = orl_mesh_set_normals(job->log, &mesh);
-    char *path = result == ORL_OK ? orl_import_path(job, "%smesh.ply", folder) : NULL;
-    ORL_THEN(result, path ? orl_mesh_write(job->log, path, &mesh) : ORL_ERR_MEMORY);
+    ORL_THEN(result, orl_mesh_write(job->log, ORL_PATH(job->dir, "%smesh.ply", folder), &mesh));
     *triangles = mesh.triangle_count;
-    free(path);
     orl_mesh_finish(&mesh);
     return result;
 }
@@ -309,45 +285,34 @@ enum orl_result orl_import_write_manifest(const struct import_job *job, size_t p
                                           size_t triangles)
 {
     uint64_t hash = 0;
-    char *path = orl_import_path(job, "scene.json"), *cloud = orl_import_path(job, "points.ply");
-    enum orl_result result = path && cloud ? orl_file_hash(job->log, cloud, &hash)
-                                           : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        json_t *sums = json_pack("{s:o}", "points.ply", json_sprintf("xxh3:%016" PRIx64, hash));
-        json_t *root = json_pack(
-            "{s:s, s:i, s:s, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
-            ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts",
-            counts(job, points, triangles), "photographs", photographs(job), "left_out", left_out(job),
-            "stages", "checksums", sums);
-        if (root)
-            set_import(job, root);
-        result = orl_json_write(job->log, path, root);
-        json_decref(root);
-    }
-    free(path);
-    free(cloud);
+    ORL_TRY(orl_file_hash(job->log, ORL_PATH(job->dir, "points.ply"), &hash));
+    json_t *sums = json_pack("{s:o}", "points.ply", json_sprintf("xxh3:%016" PRIx64, hash));
+    json_t *root = json_pack(
+        "{s:s, s:i, s:s, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
+        ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts",
+        counts(job, points, triangles), "photographs", photographs(job), "left_out", left_out(job),
+        "stages", "checksums", sums);
+    if (root)
+        set_import(job, root);
+    enum orl_result result = orl_json_write(job->log, ORL_PATH(job->dir, "scene.json"), root);
+    json_decref(root);
     return result;
 }
 
 enum orl_result orl_import_complete_manifest(const struct import_job *job, size_t triangles)
 {
-    json_t *root = NULL, *missing = left_out(job);
-    char *path = orl_import_path(job, "scene.json");
-    enum orl_result result = path ? orl_json_read(job->log, path, &root) : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        json_t *numbers = json_object_get(root, "counts");
-        set_import(job, root);
-        json_object_set_new(root, "left_out", json_incref(missing));
-        json_object_set_new(numbers, "given",
-                            json_integer((json_int_t)job->known.model.image_count));
-        json_object_set_new(numbers, "left_out",
-                            json_integer((json_int_t)json_array_size(missing)));
-        json_object_set_new(numbers, "triangles", json_integer((json_int_t)triangles));
-        json_object_set_new(numbers, "frames", json_integer((json_int_t)job->frame_count));
-        result = orl_json_write(job->log, path, root);
-    }
+    json_t *root = NULL;
+    const char *path = ORL_PATH(job->dir, "scene.json");
+    ORL_TRY(orl_json_read(job->log, path, &root));
+    json_t *numbers = json_object_get(root, "counts"), *missing = left_out(job);
+    set_import(job, root);
+    json_object_set_new(root, "left_out", json_incref(missing));
+    json_object_set_new(numbers, "given", json_integer((json_int_t)job->known.model.image_count));
+    json_object_set_new(numbers, "left_out", json_integer((json_int_t)json_array_size(missing)));
+    json_object_set_new(numbers, "triangles", json_integer((json_int_t)triangles));
+    json_object_set_new(numbers, "frames", json_integer((json_int_t)job->frame_count));
+    enum orl_result result = orl_json_write(job->log, path, root);
     json_decref(missing);
     json_decref(root);
-    free(path);
     return result;
 }
