@@ -68,17 +68,12 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
 // COLMAP's own lists would include held-out photographs as sources.
 static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_names *train)
 {
-    struct orl_atomic_file file = {0};
-    char *fusion = orl_job_path(job, "stereo/fusion.cfg");
-    char *sources = orl_job_path(job, "stereo/patch-match.cfg");
-    enum orl_result result = fusion && sources ? orl_job_write_list(job, fusion, train)
-                                               : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_atomic_open(job->log, sources, &file));
-    ORL_THEN(result, write_sources(job, file.stream, train));
+    struct orl_atomic_file file;
+    ORL_TRY(orl_job_write_list(job, ORL_PATH(job->dir, "stereo/fusion.cfg"), train));
+    ORL_TRY(orl_atomic_open(job->log, ORL_PATH(job->dir, "stereo/patch-match.cfg"), &file));
+    enum orl_result result = write_sources(job, file.stream, train);
     ORL_THEN(result, orl_atomic_commit(job->log, &file));
     orl_atomic_abort(&file);
-    free(fusion);
-    free(sources);
     return result;
 }
 
@@ -110,20 +105,13 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
                                   json_t *record)
 {
     struct orl_densify_params params = densify_settings(job);
-    enum orl_result result = orl_job_sparse(job, &params.model);
+    ORL_TRY(orl_job_sparse(job, &params.model));
     struct orl_gpu *own = NULL, *gpu = job->params->gpu;
-    char *masks = orl_job_path(job, "masks");
-    if (!masks)
-        result = ORL_ERR_MEMORY;
-    if (result == ORL_OK && !gpu) {
-        result = orl_gpu_create(job->log,
-                                &(struct orl_gpu_params){.shader_dir = job->params->shader_dir},
-                                &own);
+    if (!gpu) {
+        ORL_TRY(orl_gpu_create(job->log, &(struct orl_gpu_params){.shader_dir = job->params->shader_dir}, &own));
         gpu = own;
     }
-    if (result != ORL_OK)
-        goto end;
-    params.masks_dir = job->params->masks_dir ? masks : NULL;
+    params.masks_dir = job->params->masks_dir ? ORL_PATH(job->dir, "masks") : NULL;
     const struct orl_gpu_caps *caps = orl_gpu_caps(gpu);
     json_object_set_new(record, "tool", json_string("built-in PatchMatch"));
     json_object_set_new(record, "device", json_string(caps->renderer));
@@ -133,10 +121,8 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
         "window_step", params.window_step));
     orl_logf(job->log, ORL_LOG_INFO, "densify: %zu photographs on %s", train->count,
              caps->renderer);
-    result = orl_densify(gpu, job->dir, train, &params, job->progress);
-end:
+    enum orl_result result = orl_densify(gpu, job->dir, train, &params, job->progress);
     orl_gpu_destroy(&own);
-    free(masks);
     return result;
 }
 
@@ -148,9 +134,7 @@ static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
     orl_colmap_arg(&args, "--PatchMatchStereo.geom_consistency", "1");
     enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "patch_match_stereo", .step = "densify", .share = 1, .total = 1}, &args);
-    char *maps = orl_job_path(job, "stereo");
-    ORL_THEN(result, maps ? orl_flush(job->log, maps) : ORL_ERR_MEMORY);
-    free(maps);
+    ORL_THEN(result, orl_flush(job->log, ORL_PATH(job->dir, "stereo")));
     json_object_set_new(record, "tool",
                         json_sprintf("COLMAP %s patch_match_stereo", job->colmap_version));
     if (result == ORL_OK)
@@ -164,8 +148,7 @@ static enum orl_result begin_stereo(const struct orl_job *job)
     const char *key = job->keys[ORL_STAGE_DENSIFY];
     uint8_t *data = NULL;
     size_t size;
-    char *path = orl_job_path(job, "stereo/.oriel-key");
-    ORL_TRY_MEMORY(path);
+    const char *path = ORL_PATH(job->dir, "stereo/.oriel-key");
     bool same = orl_file_read(NULL, path, 64, &data, &size) == ORL_OK &&
                 strcmp((const char *)data, key) == 0;
     enum orl_result result = ORL_OK;
@@ -177,7 +160,6 @@ static enum orl_result begin_stereo(const struct orl_job *job)
         ORL_THEN(result, orl_file_write(job->log, path, key, strlen(key)));
     }
     free(data);
-    free(path);
     return result;
 }
 
@@ -208,17 +190,14 @@ enum orl_result orl_stage_densify_begin(struct orl_job *job)
     struct orl_names train = {0};
     struct orl_densify_params params = densify_settings(job);
     bool use_colmap = false;
-    char *masks = orl_job_path(job, "masks");
-    enum orl_result result = masks ? choose_densifier(job, &use_colmap) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !use_colmap)
-        result = orl_job_sparse(job, &params.model);
-    if (result == ORL_OK && !use_colmap)
-        result = open_stereo(job, &train);
-    params.masks_dir = job->params->masks_dir ? masks : NULL;
-    if (result == ORL_OK && !use_colmap)
-        result = orl_densify_begin(job->log, job->dir, &train, &params);
+    ORL_TRY(choose_densifier(job, &use_colmap));
+    if (use_colmap)
+        return ORL_OK;
+    ORL_TRY(orl_job_sparse(job, &params.model));
+    enum orl_result result = open_stereo(job, &train);
+    params.masks_dir = job->params->masks_dir ? ORL_PATH(job->dir, "masks") : NULL;
+    ORL_THEN(result, orl_densify_begin(job->log, job->dir, &train, &params));
     orl_names_finish(&train);
-    free(masks);
     return result;
 }
 

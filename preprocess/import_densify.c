@@ -22,11 +22,11 @@ static enum orl_result add_source(struct orl_job *job, const struct import_job *
     const struct orl_camera *size = &import->targets[view->camera];
     *source = (struct orl_source){.name = orl_strdup(job->log, view->name),
                                   .given = orl_strdup(job->log, view->name),
-                                  .path = orl_job_path(job, "images/%s", view->name),
+                                  .path = orl_strdup(job->log, ORL_PATH(job->dir, "images/%s", view->name)),
                                   .width = size->width, .height = size->height,
                                   .test = view->test};
     if (view->masked)
-        source->mask = orl_job_path(job, "masks/%s.png", view->name);
+        source->mask = orl_strdup(job->log, ORL_PATH(job->dir, "masks/%s.png", view->name));
     if (!source->name || !source->given || !source->path ||
         (view->masked && !source->mask))
         return ORL_ERR_MEMORY;
@@ -49,11 +49,8 @@ static enum orl_result begin(struct orl_job *job, const struct import_job *impor
     enum orl_result result = job->sources && job->skipped ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < import->view_count; i++)
         result = add_source(job, import, &import->views[i]);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++) {
-        char *path = orl_job_path(job, "%s", dirs[i]);
-        result = path ? orl_dir_make(job->log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++)
+        result = orl_dir_make(job->log, ORL_PATH(job->dir, "%s", dirs[i]));
     ORL_THEN(result, orl_stages_load(job));
     return result == ORL_OK ? orl_stages_begin(job, 0) : result;
 }
@@ -62,7 +59,7 @@ static enum orl_result begin(struct orl_job *job, const struct import_job *impor
 
 // Paths for COLMAP's commands.
 struct paths {
-    char *database, *images, *list, *in, *out; // owned
+    const char *database, *images, *list, *in, *out;
 };
 
 static enum orl_result find_features(struct orl_job *job, const struct paths *paths)
@@ -171,26 +168,19 @@ static enum orl_result make_sparse_points(struct orl_job *job, const struct impo
     struct orl_colmap_model bare = import->known.model;
     bare.point_count = 0;
     const struct import_points known = {&bare, false};
-    struct paths paths = {
-        orl_job_path(job, DATABASE), orl_job_path(job, "images"),
-        orl_job_path(job, ".oriel/train.txt"), orl_job_path(job, ".oriel/known"),
-        orl_job_path(job, ".oriel/triangulated")};
-    bool have = paths.database && paths.images && paths.list && paths.in && paths.out;
-    enum orl_result result = have ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
-    ORL_THEN(result, write_train_list(job, paths.list));
-    ORL_THEN(result, orl_import_write_model(import, ".oriel/known", true, &known));
-    ORL_THEN(result, orl_dir_make(job->log, paths.out));
-    ORL_THEN(result, find_features(job, &paths));
-    ORL_THEN(result, match(job, import));
-    ORL_THEN(result, leave_out_unconnected(job, &paths));
-    ORL_THEN(result, triangulate(job, &paths));
-    ORL_THEN(result, take_points(import, &paths));
-    free(paths.database);
-    free(paths.images);
-    free(paths.list);
-    free(paths.in);
-    free(paths.out);
-    return result;
+    const struct paths paths = {
+        ORL_PATH(job->dir, DATABASE), ORL_PATH(job->dir, "images"),
+        ORL_PATH(job->dir, ".oriel/train.txt"), ORL_PATH(job->dir, ".oriel/known"),
+        ORL_PATH(job->dir, ".oriel/triangulated")};
+    ORL_TRY(orl_job_find_colmap(job));
+    ORL_TRY(write_train_list(job, paths.list));
+    ORL_TRY(orl_import_write_model(import, ".oriel/known", true, &known));
+    ORL_TRY(orl_dir_make(job->log, paths.out));
+    ORL_TRY(find_features(job, &paths));
+    ORL_TRY(match(job, import));
+    ORL_TRY(leave_out_unconnected(job, &paths));
+    ORL_TRY(triangulate(job, &paths));
+    return take_points(import, &paths);
 }
 
 // True when the file of cameras says which photographs see its points, as stereo needs to know.

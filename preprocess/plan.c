@@ -41,7 +41,7 @@ struct planner {
     struct orl_names photos;
     struct orl_colmap_model model;
     struct orl_densify_params densify;
-    char *masks;       // owned; the folder, NULL: none
+    char masks[ORL_PATH_SIZE]; // the folder, where there is one
     int parts;
     double max_ram;    // bytes; INFINITY: no limit, since the machines of the jobs are not known
     struct orl_clusters clusters; // of fusion
@@ -55,12 +55,8 @@ struct planner {
 // The photographs of a calibration that has begun; *begun stays NULL where none has.
 static enum orl_result read_begun(const struct planner *p, json_t **begun)
 {
-    char *path = orl_path_join(p->log, p->dir, ORL_PARTS_STATE);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path))
-        result = orl_json_read(p->log, path, begun);
-    free(path);
-    return result;
+    const char *path = ORL_PATH(p->dir, ORL_PARTS_STATE);
+    return orl_path_is_file(path) ? orl_json_read(p->log, path, begun) : ORL_OK;
 }
 
 // Takes out options that earlier programs had, each with its value.
@@ -100,10 +96,8 @@ static enum orl_result parse_arguments(struct planner *p, const char *path)
 static enum orl_result read_arguments(struct planner *p)
 {
     json_t *stages = NULL, *begun = NULL;
-    char *path = orl_path_join(p->log, p->dir, ".oriel/stages.json");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path))
-        result = orl_json_read(p->log, path, &stages);
+    const char *path = ORL_PATH(p->dir, ".oriel/stages.json");
+    enum orl_result result = orl_path_is_file(path) ? orl_json_read(p->log, path, &stages) : ORL_OK;
     p->undistorted = json_object_get(json_object_get(stages, "done"), "undistort") != NULL;
     if (result == ORL_OK && !p->undistorted)
         result = read_begun(p, &begun);
@@ -115,7 +109,6 @@ static enum orl_result read_arguments(struct planner *p)
                           "--out %s --until undistort (or collect) first", p->dir, p->dir);
     ORL_THEN(result, parse_arguments(p, path));
     json_decref(stages);
-    free(path);
     return result;
 }
 
@@ -123,31 +116,20 @@ static enum orl_result read_arguments(struct planner *p)
 // parts.
 static enum orl_result read_photos(struct planner *p)
 {
-    char *begun = orl_path_join(p->log, p->dir, "stereo/densify.json");
-    char *list = orl_path_join(p->log, p->dir, "stereo/fusion.cfg");
-    enum orl_result result = begun && list ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(begun))
-        result = orl_file_read_names(p->log, list, &p->photos);
-    free(begun);
-    free(list);
-    return result;
+    return orl_path_is_file(ORL_PATH(p->dir, "stereo/densify.json"))
+               ? orl_file_read_names(p->log, ORL_PATH(p->dir, "stereo/fusion.cfg"), &p->photos) : ORL_OK;
 }
 
 static enum orl_result read_scene(struct planner *p, int photographs)
 {
-    char *sparse = orl_path_join(p->log, p->dir, "sparse");
-    enum orl_result result = sparse ? orl_colmap_read(p->log, sparse, &p->model) : ORL_ERR_MEMORY;
-    free(sparse);
-    if (result != ORL_OK || (result = read_photos(p)) != ORL_OK)
-        return result;
+    ORL_TRY(orl_colmap_read(p->log, ORL_PATH(p->dir, "sparse"), &p->model));
+    ORL_TRY(read_photos(p));
     size_t count = p->photos.count;
     p->parts = (int)((count + (size_t)photographs - 1) / (size_t)photographs);
     p->densify = orl_densify_quality(p->params.quality);
     p->densify.seed = p->params.seed;
     p->densify.max_vram_bytes = p->params.max_vram_bytes;
-    if (p->params.masks_dir && !(p->masks = orl_path_join(p->log, p->dir, "masks")))
-        return ORL_ERR_MEMORY;
-    p->densify.masks_dir = p->masks;
+    p->densify.masks_dir = p->params.masks_dir ? orl_path_print(p->masks, p->dir, "masks") : NULL;
     p->pixels = orl_array(p->log, count + 1, sizeof *p->pixels);
     p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
     ORL_TRY_MEMORY(p->pixels && p->reads);
@@ -258,7 +240,7 @@ static json_t *fuse_command(const struct planner *p, int cluster)
 {
     json_t *list = json_pack("[s, s, s, s]", "oriel", "job", "fuse", p->dir);
     add_option(list, "--photographs", (int)p->clusters.size);
-    if (p->masks)
+    if (p->densify.masks_dir)
         add_text(list, "--masks");
     if (p->params.max_ram_bytes)
         add_option(list, "--max-ram", (int)(p->params.max_ram_bytes >> 20));
@@ -293,18 +275,17 @@ static enum orl_result plan_cluster(struct planner *p, int cluster)
     double pixels;
     json_t *needs = json_array();
     enum orl_result result = fuse_needs(p, cluster, needs, &pixels);
-    char *path = orl_fuse_cluster_path(p->log, p->dir, p->clusters.size, cluster, ".ply");
-    if (result == ORL_OK && path)
+    if (result == ORL_OK)
         json_array_append_new(p->jobs, json_pack(
             "{s:o, s:s, s:o, s:O, s:[s+, s+, s+], s:[s], s:i, s:f, s:f, s:f, s:f}", "name",
             fuse_name(cluster), "kind", "fuse", "command", fuse_command(p, cluster), "needs",
             needs, "inputs", p->dir, "/stereo", p->dir, "/images", p->dir, "/sparse", "outputs",
-            path, "threads", 1, "cpu_s", pixels * 1e-6 * FUSE_S_PER_MPX, "memory_bytes",
+            ORL_FUSE_CLUSTER_PATH(p->dir, p->clusters.size, cluster, ".ply"), "threads", 1, "cpu_s",
+            pixels * 1e-6 * FUSE_S_PER_MPX, "memory_bytes",
             FINISH_BASE_BYTES + fmin(orl_fuse_bytes(pixels), p->max_ram), "read_bytes",
             pixels * 2 * PASS_BYTES, "written_bytes", pixels * CLOUD_BYTES));
     json_decref(needs);
-    free(path);
-    return result == ORL_OK && !path ? ORL_ERR_MEMORY : result;
+    return result;
 }
 
 static json_t *prepare_command(const struct planner *p, const char *until)
@@ -444,10 +425,9 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
     *plan = NULL;
     enum orl_result result = p.dir ? ORL_OK
                                    : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", scene);
-    char *manifest = p.dir ? orl_path_join(log, p.dir, "scene.json") : NULL;
-    if (result == ORL_OK && (!manifest || !p.jobs))
+    if (result == ORL_OK && !p.jobs)
         result = ORL_ERR_MEMORY;
-    if (result == ORL_OK && !orl_path_is_file(manifest)) {
+    if (result == ORL_OK && !orl_path_is_file(ORL_PATH(p.dir, "scene.json"))) {
         result = read_arguments(&p);
         if (result == ORL_OK && !p.undistorted)
             plan_calibration(&p, photographs);
@@ -468,10 +448,8 @@ enum orl_result orl_plan(const struct orl_log *log, const char *scene, int photo
     orl_names_finish(&p.photos);
     orl_clusters_finish(&p.clusters);
     orl_colmap_finish(&p.model);
-    free(p.masks);
     free(p.pixels);
     free(p.reads);
     free(p.dir);
-    free(manifest);
     return result;
 }

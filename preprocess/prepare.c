@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -52,11 +51,9 @@ static enum orl_result begin(struct orl_job *job)
 static bool is_refined(const struct orl_job *job)
 {
     json_t *root = NULL;
-    char *path = orl_job_path(job, "scene.json");
-    bool kept = path && orl_json_read(job->log, path, &root) == ORL_OK &&
+    bool kept = orl_json_read(job->log, ORL_PATH(job->dir, "scene.json"), &root) == ORL_OK &&
                 json_object_size(json_object_get(root, "tuned")) > 0;
     json_decref(root);
-    free(path);
     return kept && orl_job_has(job, ORL_SOFT_NAME) && !orl_job_has(job, ORL_REFINE_STATE_NAME);
 }
 

@@ -1,7 +1,6 @@
 #include "preprocess/results.h"
 #include "core/file.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static enum orl_result add_file(const struct orl_job *job, const char *path, json_t *files)
@@ -20,14 +19,11 @@ static enum orl_result add_folder(const struct orl_job *job, const char *dir, js
     struct orl_names names;
     enum orl_result result = orl_dir_list(job->log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *path = orl_path_join(job->log, dir, names.items[i]);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_progress_cancelled(job->progress))
+        const char *path = ORL_PATH(dir, "%s", names.items[i]);
+        if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;
         else if (orl_path_is_file(path))
             result = add_file(job, path, files);
-        free(path);
     }
     orl_names_finish(&names);
     return result;
@@ -36,38 +32,28 @@ static enum orl_result add_folder(const struct orl_job *job, const char *dir, js
 enum orl_result orl_results_sum(const struct orl_job *job, const char *const *names,
                                 json_t *files)
 {
-    enum orl_result result = ORL_OK;
-    for (; result == ORL_OK && *names; names++) {
-        char *path = orl_job_path(job, "%s", *names);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(path))
-            result = add_folder(job, path, files);
+    for (; *names; names++) {
+        const char *path = ORL_PATH(job->dir, "%s", *names);
+        if (orl_path_is_dir(path))
+            ORL_TRY(add_folder(job, path, files));
         else if (orl_path_is_file(path))
-            result = add_file(job, path, files);
-        free(path);
+            ORL_TRY(add_file(job, path, files));
     }
-    return result;
+    return ORL_OK;
 }
 
-enum orl_result orl_results_check(const struct orl_job *job, const json_t *files,
-                                  const char **damaged, const char **why)
+const char *orl_results_check(const struct orl_job *job, const json_t *files, const char **why)
 {
     const char *name;
     json_t *value;
-    *damaged = *why = NULL;
     json_object_foreach((json_t *)(uintptr_t)files, name, value) {
-        char sum[ORL_CHECKSUM_SIZE], *path = orl_job_path(job, "%s", name);
-        const char *told = json_string_value(value);
-        if (!path)
-            return ORL_ERR_MEMORY;
+        char sum[ORL_CHECKSUM_SIZE];
+        const char *told = json_string_value(value), *path = ORL_PATH(job->dir, "%s", name);
         bool read = orl_path_is_file(path) && orl_file_checksum(NULL, path, sum) == ORL_OK;
-        free(path);
         if (read && told && strcmp(sum, told) == 0)
             continue;
-        *damaged = name;
         *why = read ? "changed since it was made" : "missing";
-        break;
+        return name;
     }
-    return ORL_OK;
+    return NULL;
 }

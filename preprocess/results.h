@@ -9,9 +9,8 @@
 // folders. NULL ends `names`. Missing files are left out.
 enum orl_result orl_results_sum(const struct orl_job *job, const char *const *names,
                                 json_t *files) ORL_CHECK_RESULT;
-// Compares each file with its checksum. *damaged is the first that differs or is missing, *why the
-// reason.
-enum orl_result orl_results_check(const struct orl_job *job, const json_t *files,
-                                  const char **damaged, const char **why) ORL_CHECK_RESULT;
+// Compares each file with its checksum. Returns the first that differs or is missing, *why being the
+// reason; NULL: none.
+const char *orl_results_check(const struct orl_job *job, const json_t *files, const char **why);
 
 #endif

@@ -135,12 +135,11 @@ static enum orl_result try_manifest(struct orl_job *job, const struct orl_log *l
 // Records of earlier versions have no checksum, so an edited value may come this far.
 static enum orl_result check_manifest(struct orl_job *job, const json_t *root)
 {
-    char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = path ? try_manifest(job, job->log, path, root) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, ".oriel/stages.json");
+    enum orl_result result = try_manifest(job, job->log, path, root);
     if (result == ORL_ERR_FORMAT)
         orl_logf(job->log, ORL_LOG_ERROR, "%s: makes no scene; remove this file and run prepare with "
                  "--resume, which does all stages again", path);
-    free(path);
     return result;
 }
 
@@ -190,29 +189,23 @@ static json_t *make_manifest(const struct orl_job *job)
 enum orl_result orl_scene_json_open(struct orl_job *job, struct orl_scene **scene)
 {
     json_t *root = make_manifest(job);
-    char *path = orl_job_path(job, ".oriel/stages.json");
-    enum orl_result result = root && path ? orl_job_open_scene(job, scene)
-                                          : orl_fail(job->log, ORL_ERR_MEMORY,
-                                                     "no memory for the scene");
-    ORL_THEN(result, orl_manifest_take(job->log, path, root, *scene));
+    enum orl_result result = root ? orl_job_open_scene(job, scene)
+                                  : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the scene");
+    ORL_THEN(result, orl_manifest_take(job->log, ORL_PATH(job->dir, ".oriel/stages.json"), root, *scene));
     if (result != ORL_OK)
         orl_scene_destroy(scene);
     json_decref(root);
-    free(path);
     return result;
 }
 
 enum orl_result orl_scene_json_write(struct orl_job *job)
 {
-    char *path = orl_job_path(job, "scene.json");
+    const char *path = ORL_PATH(job->dir, "scene.json");
     json_t *root = make_manifest(job);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !root)
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    enum orl_result result = root ? ORL_OK : orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     ORL_THEN(result, check_manifest(job, root));
     ORL_THEN(result, keep_tuned(job, path, root));
     ORL_THEN(result, orl_json_write(job->log, path, root));
     json_decref(root);
-    free(path);
     return result;
 }

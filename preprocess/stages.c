@@ -219,19 +219,15 @@ static json_t *read_stages(const struct orl_job *job, const char *path)
 
 enum orl_result orl_stages_load(struct orl_job *job)
 {
-    char *path = orl_job_path(job, ".oriel/stages.json");
     // The plan is always this program's, not that of the file.
     json_t *plan = json_array();
     for (int i = 0; i < ORL_STAGE_COUNT; i++)
         if (is_wanted(job, i))
             json_array_append_new(plan, json_string(stages[i].name));
-    job->stages = path ? read_stages(job, path) : NULL;
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && json_object_set(job->stages, "plan", plan) != 0)
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the stages");
+    job->stages = read_stages(job, ORL_PATH(job->dir, ".oriel/stages.json"));
+    bool set = json_object_set(job->stages, "plan", plan) == 0;
     json_decref(plan);
-    free(path);
-    return result;
+    return set ? ORL_OK : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the stages");
 }
 
 static const char *old_key(const struct orl_job *job, int id)
@@ -276,7 +272,7 @@ static enum orl_result check_record(const struct orl_job *job, json_t *record,
 static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id, bool *there)
 {
     json_t *record = json_object_get(done_stages(job), stages[id].name);
-    const char *damaged = NULL, *why = NULL;
+    const char *why;
     // There is nothing to do for a stage that is not wanted, unless its result is to be removed.
     if (!is_wanted(job, id)) {
         *there = !has_key(job, id);
@@ -291,12 +287,12 @@ static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id,
                  "or lacks a part; %s is done again", job->dir, stages[id].name, stages[id].name);
     if (!*there)
         return result;
-    result = orl_results_check(job, json_object_get(record, "files"), &damaged, &why);
+    const char *damaged = orl_results_check(job, json_object_get(record, "files"), &why);
     if (damaged)
         orl_logf(job->log, ORL_LOG_WARNING, "%s/%s: %s; %s is done again", job->dir, damaged, why,
                  stages[id].name);
     *there = !damaged;
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result find_current(const struct orl_job *job, bool current[ORL_STAGE_COUNT])

@@ -55,8 +55,8 @@ static enum orl_result color_from(struct orl_job *job, const struct orl_silhouet
                                   struct orl_points *points)
 {
     struct orl_image picture = {0};
-    char *path = orl_job_path(job, "images/%s", found->image[photo]->name);
-    enum orl_result result = path ? orl_picture_read(job->log, path, 3, &picture) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, "images/%s", found->image[photo]->name);
+    enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
     for (size_t p = first; result == ORL_OK && p < points->count; p++) {
         const double *pixel = origins[p - first].pixel;
         if (origins[p - first].photo == photo && pixel[0] < picture.width &&
@@ -66,7 +66,6 @@ static enum orl_result color_from(struct orl_job *job, const struct orl_silhouet
                    sizeof points->color[p]);
     }
     orl_image_finish(&picture);
-    free(path);
     return result;
 }
 

@@ -1,13 +1,11 @@
 #include "preprocess/cloud/fuse.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "core/json.h"
 #include "core/lock.h"
-#include "core/memory.h"
 #include "preprocess/cloud/close_hull.h"
 #include "preprocess/cloud/fuse_memory.h"
 #include "preprocess/cloud/fuse_photographs.h"
@@ -72,21 +70,6 @@ static enum orl_result write_cloud(struct orl_job *job, const char *path, struct
 
 // --- one cluster ---
 
-// The folder's name holds what the points depend on beside the maps, which are beside it and go
-// with it.
-char *orl_fuse_cluster_path(const struct orl_log *log, const char *scene, size_t size, int cluster,
-                            const char *extension)
-{
-    return orl_format(log, "%s/stereo/fused/%d-%zu/%06d%s", scene, ORL_FUSE_VERSION, size,
-                      cluster + 1, extension);
-}
-
-static char *cluster_path(const struct orl_job *job, const struct orl_clusters *clusters,
-                          int cluster, const char *extension)
-{
-    return orl_fuse_cluster_path(job->log, job->dir, clusters->size, cluster, extension);
-}
-
 // Fuses a cluster and writes the points that belong to it.
 static enum orl_result fuse_members(struct orl_job *job, const struct orl_clusters *clusters,
                                     int cluster, const char *out)
@@ -106,12 +89,12 @@ static enum orl_result fuse_members(struct orl_job *job, const struct orl_cluste
 static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_clusters *clusters,
                                     int cluster)
 {
-    char *out = cluster_path(job, clusters, cluster, ".ply");
-    char *lock = cluster_path(job, clusters, cluster, ".lock");
+    const char *out = ORL_FUSE_CLUSTER_PATH(job->dir, clusters->size, cluster, ".ply");
     int fd = -1;
     bool taken = false;
-    enum orl_result result = out && lock ? orl_file_make_folder(job->log, out) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_lock(job->log, lock, &fd, &taken));
+    ORL_TRY(orl_file_make_folder(job->log, out));
+    enum orl_result result =
+        orl_lock(job->log, ORL_FUSE_CLUSTER_PATH(job->dir, clusters->size, cluster, ".lock"), &fd, &taken);
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is fusing this cluster",
                           out);
@@ -120,8 +103,6 @@ static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_cluste
     else if (result == ORL_OK)
         result = fuse_members(job, clusters, cluster, out);
     orl_unlock(&fd);
-    free(out);
-    free(lock);
     return result;
 }
 
@@ -136,9 +117,8 @@ static enum orl_result add_cluster(const struct orl_job *job, const struct orl_c
     struct orl_points points = {0};
     uint64_t total = 0;
     size_t read = writer != NULL;
-    char *path = cluster_path(job, clusters, cluster, ".ply");
-    enum orl_result result = path ? orl_point_stream_open(job->log, path, &stream, &total)
-                                  : ORL_ERR_MEMORY;
+    enum orl_result result = orl_point_stream_open(
+        job->log, ORL_FUSE_CLUSTER_PATH(job->dir, clusters->size, cluster, ".ply"), &stream, &total);
     if (result == ORL_OK && writer)
         result = orl_points_init(job->log, &points, READ_POINTS);
     while (result == ORL_OK && read) {
@@ -148,7 +128,6 @@ static enum orl_result add_cluster(const struct orl_job *job, const struct orl_c
     *count += total;
     orl_points_finish(&points);
     orl_point_stream_close(&stream);
-    free(path);
     return result;
 }
 
@@ -208,8 +187,8 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     struct orl_names train = {0};
     struct orl_clusters clusters = {0};
     const struct orl_colmap_model *model = NULL;
-    char *path = orl_job_path(job, ".oriel/fused.ply");
-    enum orl_result result = path ? orl_job_sparse(job, &model) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, ".oriel/fused.ply");
+    enum orl_result result = orl_job_sparse(job, &model);
     ORL_THEN(result, orl_job_train_names(job, &train));
     ORL_THEN(result, make_clusters(job, model, &train, &clusters));
     if (result == ORL_OK && clusters.count > 1)
@@ -227,7 +206,6 @@ enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record)
     }
     orl_clusters_finish(&clusters);
     orl_names_finish(&train);
-    free(path);
     return result;
 }
 

@@ -24,10 +24,10 @@ enum orl_result orl_fuse_clusters(const struct orl_log *log, const struct orl_co
 // and gives the same points as a run that was not interrupted.
 enum orl_result orl_fuse_choose(struct orl_job *job, const struct orl_colmap_model *model,
                                 const struct orl_names *train, size_t *size) ORL_CHECK_RESULT;
-// The file of a cluster's cloud, with another extension than .ply for what belongs to it. The caller
-// releases it with free().
-char *orl_fuse_cluster_path(const struct orl_log *log, const char *scene, size_t size, int cluster,
-                            const char *extension);
+// The file of a cluster's cloud (ORL_PATH), with another extension than .ply for what belongs to it. The folder's name
+// holds what the points depend on beside the maps, which are beside it and go with it.
+#define ORL_FUSE_CLUSTER_PATH(scene, size, cluster, extension) \
+    ORL_PATH(scene, "stereo/fused/%d-%zu/%06d" extension, ORL_FUSE_VERSION, size, (cluster) + 1)
 
 struct orl_fuse_params {
     int size;             // photographs of a cluster at most; 0: what fits in memory

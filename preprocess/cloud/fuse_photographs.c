@@ -96,10 +96,8 @@ static enum orl_result apply_mask(const struct orl_job *job, const char *name,
                                   struct orl_image *depth)
 {
     struct orl_image mask = {0};
-    char *path = orl_job_path(job, "masks/%s.png", name);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path))
-        result = orl_picture_read(job->log, path, 1, &mask);
+    const char *path = ORL_PATH(job->dir, "masks/%s.png", name);
+    enum orl_result result = orl_path_is_file(path) ? orl_picture_read(job->log, path, 1, &mask) : ORL_OK;
     for (int y = 0; mask.u8 && y < depth->height; y++)
         for (int x = 0; x < depth->width; x++) {
             size_t u = (size_t)x * (size_t)mask.width / (size_t)depth->width;
@@ -108,26 +106,20 @@ static enum orl_result apply_mask(const struct orl_job *job, const char *name,
                 depth->f32[(size_t)y * (size_t)depth->width + (size_t)x] = 0;
         }
     orl_image_finish(&mask);
-    free(path);
     return result;
 }
 
 enum orl_result orl_fuse_read_map(const struct orl_job *job, const struct orl_colmap_model *model,
                                   const struct orl_colmap_image *image, struct orl_depth_map *map)
 {
-    char *path = orl_job_path(job, "stereo/depth_maps/%s.geometric.bin", image->name);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path)) // COLMAP writes no map without sources
-        result = orl_colmap_map_read(job->log, path, &map->depth);
-    if (result == ORL_OK && map->depth.f32) {
-        map->view = orl_colmap_image_view(model, image);
-        map->view.camera = orl_camera_resized(&map->view.camera, map->depth.width,
-                                              map->depth.height);
-        if (job->params->masks_dir)
-            result = apply_mask(job, image->name, &map->depth);
-    }
-    free(path);
-    return result;
+    const char *path = ORL_PATH(job->dir, "stereo/depth_maps/%s.geometric.bin", image->name);
+    if (orl_path_is_file(path)) // COLMAP writes no map without sources
+        ORL_TRY(orl_colmap_map_read(job->log, path, &map->depth));
+    if (!map->depth.f32)
+        return ORL_OK;
+    map->view = orl_colmap_image_view(model, image);
+    map->view.camera = orl_camera_resized(&map->view.camera, map->depth.width, map->depth.height);
+    return job->params->masks_dir ? apply_mask(job, image->name, &map->depth) : ORL_OK;
 }
 
 static enum orl_result read_depth(struct fusion *f, size_t i)
@@ -152,23 +144,19 @@ static enum orl_result write_pixels(struct fusion *f, size_t i)
     struct orl_image normal = {0}, whole = {0}, picture = {0};
     if (s->found.count == 0)
         return ORL_OK;
-    char *normals = orl_job_path(job, "stereo/normal_maps/%s.geometric.bin", s->image->name);
-    char *photo = orl_job_path(job, "images/%s", s->image->name);
-    enum orl_result result = normals && photo ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_colmap_map_read(job->log, normals, &normal));
+    const char *normals = ORL_PATH(job->dir, "stereo/normal_maps/%s.geometric.bin", s->image->name);
+    enum orl_result result = orl_colmap_map_read(job->log, normals, &normal);
     if (result == ORL_OK && (normal.width != depth->width || normal.height != depth->height ||
                              normal.channels != 3))
         result = orl_fail(job->log, ORL_ERR_FORMAT, "%s: not of the size of the depth map, %dx%d",
                           normals, depth->width, depth->height);
-    ORL_THEN(result, orl_picture_read(job->log, photo, 3, &whole));
+    ORL_THEN(result, orl_picture_read(job->log, ORL_PATH(job->dir, "images/%s", s->image->name), 3, &whole));
     ORL_THEN(result, orl_bridge_resize(job->log, &whole, depth->width, depth->height, &picture));
     if (result == ORL_OK)
         orl_fuse_pixels_write(&f->maps[i], &s->found, &normal, &picture, s->first, f->points);
     orl_image_finish(&normal);
     orl_image_finish(&whole);
     orl_image_finish(&picture);
-    free(normals);
-    free(photo);
     return result;
 }
 

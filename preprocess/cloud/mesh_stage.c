@@ -117,17 +117,15 @@ static enum orl_result write_mesh(const struct orl_job *job, const char *from, s
 {
     struct orl_mesh mesh = {0};
     size_t most = detail_of(job->params).triangles;
-    char *to = orl_job_path(job, "mesh.ply");
-    enum orl_result result = to ? orl_mesh_read(job->log, from, &mesh) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_mesh_read(job->log, from, &mesh);
     if (result == ORL_OK && mesh.triangle_count > most)
         result = orl_mesh_decimate(job->log, most, &mesh);
     ORL_THEN(result, orl_mesh_set_normals(job->log, &mesh));
-    ORL_THEN(result, orl_mesh_write(job->log, to, &mesh));
+    ORL_THEN(result, orl_mesh_write(job->log, ORL_PATH(job->dir, "mesh.ply"), &mesh));
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     *triangles = mesh.triangle_count;
     orl_mesh_finish(&mesh);
-    free(to);
     return result;
 }
 
@@ -135,21 +133,17 @@ enum orl_result orl_stage_mesh(struct orl_job *job, json_t *record)
 {
     bool poisson = job->params->mesh == ORL_MESH_POISSON;
     size_t triangles = 0;
-    char *input = orl_job_path(job, poisson ? ".oriel/mesh.tmp/points.ply" : ".oriel/mesh.tmp/sparse");
-    char *output = orl_job_path(job, ".oriel/mesh.tmp/mesh.ply");
-    enum orl_result result = input && output ? orl_job_find_colmap(job) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_job_fresh_dir(job, ".oriel/mesh.tmp"));
-    ORL_THEN(result, poisson ? write_points(job, input) : write_train_model(job, input));
-    ORL_THEN(result, run_mesher(job, input, output));
-    ORL_THEN(result, write_mesh(job, output, &triangles));
-    ORL_THEN(result, orl_job_remove(job, ".oriel/mesh.tmp"));
-    if (result == ORL_OK) {
-        json_object_set_new(record, "tool", json_sprintf("COLMAP %s, %s", job->colmap_version,
-                                                         orl_prepare_mesh_names[job->params->mesh]));
-        json_object_set_new(record, "triangles", json_integer((json_int_t)triangles));
-        orl_progress_report(job->progress, "mesh", 1, 1, NULL);
-    }
-    free(input);
-    free(output);
-    return result;
+    const char *input = ORL_PATH(job->dir, ".oriel/mesh.tmp/%s", poisson ? "points.ply" : "sparse");
+    const char *output = ORL_PATH(job->dir, ".oriel/mesh.tmp/mesh.ply");
+    ORL_TRY(orl_job_find_colmap(job));
+    ORL_TRY(orl_job_fresh_dir(job, ".oriel/mesh.tmp"));
+    ORL_TRY(poisson ? write_points(job, input) : write_train_model(job, input));
+    ORL_TRY(run_mesher(job, input, output));
+    ORL_TRY(write_mesh(job, output, &triangles));
+    ORL_TRY(orl_job_remove(job, ".oriel/mesh.tmp"));
+    json_object_set_new(record, "tool", json_sprintf("COLMAP %s, %s", job->colmap_version,
+                                                     orl_prepare_mesh_names[job->params->mesh]));
+    json_object_set_new(record, "triangles", json_integer((json_int_t)triangles));
+    orl_progress_report(job->progress, "mesh", 1, 1, NULL);
+    return ORL_OK;
 }

@@ -65,17 +65,15 @@ static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_p
 {
     const struct orl_radii_limits limits = orl_radii_limits_of(params);
     struct orl_points points = {0};
-    char *out = orl_job_path(job, "points.ply");
-    enum orl_result result = out ? orl_points_read(job->log, in, &points) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_points_read(job->log, in, &points);
     ORL_THEN(result, orl_points_set_radii(job->log, job->progress, params,
                                           (const double (*)[3])viewers->centres, viewers->count, &points));
     ORL_THEN(result, orl_points_limit_radii(job->log, &limits, viewers->views, viewers->count, &points));
-    ORL_THEN(result, orl_points_write(job->log, out, &points, false));
+    ORL_THEN(result, orl_points_write(job->log, ORL_PATH(job->dir, "points.ply"), &points, false));
     if (result == ORL_OK)
         result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these
     *left = points.count;
     orl_points_finish(&points);
-    free(out);
     return result;
 }
 
@@ -86,15 +84,13 @@ static enum orl_result write_levels(struct orl_job *job, const struct orl_radii_
     const struct orl_lod_params how = {.max_bytes = job->params->max_ram_bytes, .radii = *params,
                                        .views = viewers->views, .view_count = viewers->count};
     struct orl_lod *lod = NULL;
-    char *out = orl_job_path(job, ORL_LOD_NAME);
-    enum orl_result result = out ? orl_lod_write(job->log, job->progress, &how, in, out)
-                                 : ORL_ERR_MEMORY;
+    const char *out = ORL_PATH(job->dir, ORL_LOD_NAME);
+    enum orl_result result = orl_lod_write(job->log, job->progress, &how, in, out);
     ORL_THEN(result, orl_lod_open(job->log, out, &lod));
     if (result == ORL_OK)
         result = orl_job_remove(job, "points.ply"); // of a cloud that was smaller
     *left = lod ? (size_t)lod->points : 0;
     orl_lod_close(&lod);
-    free(out);
     return result;
 }
 
@@ -106,9 +102,8 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
     size_t left = 0;
     struct viewers viewers = {0};
     struct orl_point_stream *stream = NULL;
-    char *in = orl_job_path(job, ".oriel/fused.ply");
-    enum orl_result result = in ? orl_point_stream_open(job->log, in, &stream, &fused)
-                                : ORL_ERR_MEMORY;
+    const char *in = ORL_PATH(job->dir, ".oriel/fused.ply");
+    enum orl_result result = orl_point_stream_open(job->log, in, &stream, &fused);
     orl_point_stream_close(&stream);
     ORL_THEN(result, find_viewers(job, &viewers));
     if (result == ORL_OK && fused > most)
@@ -129,6 +124,5 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
     json_object_set_new(record, "isolated", json_integer((json_int_t)(fused - left)));
     json_object_set_new(record, "points", json_integer((json_int_t)left));
     viewers_finish(&viewers);
-    free(in);
     return result;
 }

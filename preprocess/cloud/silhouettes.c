@@ -98,15 +98,13 @@ static enum orl_result read_masks(struct orl_job *job, struct orl_silhouettes *f
     *all = true;
     for (size_t i = 0; result == ORL_OK && *all && i < found->count; i++) {
         struct orl_silhouette *s = &found->items[i];
-        char *path = orl_job_path(job, "masks/%s.png", found->image[i]->name);
-        result = path ? ORL_OK : ORL_ERR_MEMORY;
-        *all = result == ORL_OK && orl_path_is_file(path);
+        const char *path = ORL_PATH(job->dir, "masks/%s.png", found->image[i]->name);
+        *all = orl_path_is_file(path);
         if (*all)
             result = orl_picture_read(job->log, path, 1, &s->mask);
         *all = *all && result == ORL_OK && s->mask.width == s->view.camera.width &&
                s->mask.height == s->view.camera.height &&
                add_border(&s->mask, found->count, &border);
-        free(path);
     }
     return result;
 }
@@ -117,11 +115,10 @@ static enum orl_result read_dark(struct orl_job *job, const struct orl_silhouett
                                  int threshold, int *used, struct orl_image *mask)
 {
     struct orl_image picture = {0};
-    char *path = orl_job_path(job, "images/%s", found->image[i]->name);
-    enum orl_result result = path ? orl_picture_read(job->log, path, 3, &picture) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, "images/%s", found->image[i]->name);
+    enum orl_result result = orl_picture_read(job->log, path, 3, &picture);
     ORL_THEN(result, orl_silhouette_dark(job->log, &picture, threshold, used, mask));
     orl_image_finish(&picture);
-    free(path);
     return result;
 }
 

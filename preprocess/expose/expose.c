@@ -192,7 +192,7 @@ static enum orl_result take_samples(struct exposing *e)
                                                                   ORL_LOD_SAMPLE, &points)
                                              : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
-        paths[i] = orl_job_path(job, "images/%s", e->photos[i].source->name);
+        paths[i] = orl_strdup(job->log, ORL_PATH(job->dir, "images/%s", e->photos[i].source->name));
         photos[i] = (struct orl_sample_photo){paths[i], e->photos[i].view};
         if (!paths[i])
             result = ORL_ERR_MEMORY;
@@ -422,12 +422,8 @@ static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, 
 static enum orl_result meter_photo(const struct exposing *e, const struct photo *photo,
                                    const float gain[3], double *light)
 {
-    char *path = orl_job_path(e->job, "images/%s", photo->source->name);
-    ORL_TRY_MEMORY(path);
-    enum orl_result result = orl_photo_metered(e->job->log, path, &photo->view.camera, gain,
-                                               photo->vignette, light);
-    free(path);
-    return result;
+    return orl_photo_metered(e->job->log, ORL_PATH(e->job->dir, "images/%s", photo->source->name),
+                             &photo->view.camera, gain, photo->vignette, light);
 }
 
 // Photographs whose exposures the camera chose by itself are one series. Merged as a bracket is, they give no

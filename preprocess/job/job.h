@@ -5,6 +5,7 @@
 
 #include <jansson.h>
 
+#include "core/file.h"
 #include "oriel/progress.h"
 #include "io/picture.h"
 #include "preprocess/job/exposure_list.h"
