@@ -105,75 +105,62 @@ static enum orl_result consider_all(struct calibration *c, const char *out)
     const struct orl_log *log = c->job->log;
     struct orl_colmap_model model;
     struct orl_names names;
-    char *odd = NULL; // the last that does not count
+    char odd[ORL_PATH_SIZE] = ""; // the last that does not count
     enum orl_result result = orl_dir_list(log, out, &names);
     bool one = result == ORL_OK && (orl_names_contain(&names, "cameras.bin") ||
                                     orl_names_contain(&names, "cameras.txt"));
     for (size_t i = 0; result == ORL_OK && i < (one ? 1 : names.count); i++) {
-        char *path = one ? orl_strdup(log, out) : orl_path_join(log, out, names.items[i]);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(path))
+        const char *path = one ? out : ORL_PATH(out, "%s", names.items[i]);
+        if (orl_path_is_dir(path))
             result = consider(c, path);
         if (result == ORL_ERR_FORMAT) {
             say(c, "COLMAP's next model has a camera that no ordinary lens makes and does not count");
-            free(odd);
-            odd = path;
+            orl_path_print(odd, "", "%s", path);
             result = ORL_OK;
-        } else {
-            free(path);
         }
     }
-    if (result == ORL_OK && odd && !c->best.path) {
+    if (result == ORL_OK && *odd && !c->best.path) {
         result = orl_colmap_read(log, odd, &model); // for its word on what is wrong
         if (result == ORL_ERR_FORMAT)
             result = orl_fail(log, ORL_ERR_DATA, "%s: " LENS_ADVICE, odd);
     }
     orl_names_finish(&names);
-    free(odd);
     return result;
 }
 
 // A new folder below WORK for a mapper's models.
-static enum orl_result begin_try(struct calibration *c, char **path)
+static enum orl_result begin_try(struct calibration *c, char path[ORL_PATH_SIZE])
 {
-    char name[64];
-    snprintf(name, sizeof name, WORK "/models-%d", c->tries++);
-    enum orl_result result = orl_job_fresh_dir(c->job, name);
-    *path = result == ORL_OK ? orl_job_path(c->job, "%s", name) : NULL;
-    return result == ORL_OK && !*path ? ORL_ERR_MEMORY : result;
+    const char *name = ORL_PATH(WORK, "models-%d", c->tries++);
+    orl_path_print(path, c->job->dir, "%s", name);
+    return orl_job_fresh_dir(c->job, name);
 }
 
 // The hierarchical mapper's model, adjusted as a whole, takes the place of the one that it joined.
 static enum orl_result refine(struct calibration *c)
 {
     struct candidate joined = c->best;
-    char *out;
-    enum orl_result result = begin_try(c, &out);
-    ORL_THEN(result, orl_mapper_refine(c->job, joined.path, out, c->straight));
-    if (result == ORL_OK) {
-        c->best = (struct candidate){0};
-        result = consider_all(c, out);
-        candidate_finish(&joined);
-    }
-    free(out);
+    char out[ORL_PATH_SIZE];
+    ORL_TRY(begin_try(c, out));
+    ORL_TRY(orl_mapper_refine(c->job, joined.path, out, c->straight));
+    c->best = (struct candidate){0};
+    enum orl_result result = consider_all(c, out);
+    candidate_finish(&joined);
     return result;
 }
 
 static enum orl_result map(struct calibration *c, bool loose, const char *from)
 {
-    char *out;
-    enum orl_result result = begin_try(c, &out);
-    ORL_THEN(result, orl_mapper_run(c->job, &(struct orl_mapper_run){
+    char out[ORL_PATH_SIZE];
+    ORL_TRY(begin_try(c, out));
+    ORL_TRY(orl_mapper_run(c->job, &(struct orl_mapper_run){
                 .mapper = c->mapper, .from = from, .out = out, .loose = loose,
                 .straight = c->straight}));
-    ORL_THEN(result, consider_all(c, out));
-    if (result == ORL_OK && c->mapper == ORL_MAPPER_HIERARCHICAL && !loose && !from && c->best.path)
-        result = refine(c);
-    if (result == ORL_OK)
-        orl_progress_report(c->job->progress, "mapping", 1, 1, NULL);
-    free(out);
-    return result;
+    ORL_TRY(consider_all(c, out));
+    if (c->mapper == ORL_MAPPER_HIERARCHICAL && !loose && !from && c->best.path)
+        ORL_TRY(refine(c));
+    orl_progress_report(c->job->progress, "mapping", 1, 1, NULL);
+    return ORL_OK;
 }
 
 // --- attempts ---
@@ -193,13 +180,9 @@ static enum orl_result set_mark(const struct calibration *c, bool matched)
 {
     if (!matched)
         return orl_job_remove(c->job, WORK "/matched");
-    char *path = orl_job_path(c->job, WORK "/matched"), *work = orl_job_path(c->job, WORK);
     const char *key = c->job->keys[ORL_STAGE_CALIBRATE];
-    enum orl_result result = path && work ? orl_flush(c->job->log, work) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_file_write(c->job->log, path, key, strlen(key)));
-    free(path);
-    free(work);
-    return result;
+    ORL_TRY(orl_flush(c->job->log, ORL_PATH(c->job->dir, WORK)));
+    return orl_file_write(c->job->log, ORL_PATH(c->job->dir, WORK "/matched"), key, strlen(key));
 }
 
 static enum orl_result restart_database(struct calibration *c)
@@ -235,10 +218,7 @@ static enum orl_result try_costly(struct calibration *c)
 
 static enum orl_result go_on_mapping(struct calibration *c, bool loose)
 {
-    char *from = orl_strdup(c->job->log, c->best.path);
-    enum orl_result result = from ? map(c, loose, from) : ORL_ERR_MEMORY;
-    free(from);
-    return result;
+    return map(c, loose, ORL_PATH("", "%s", c->best.path)); // which map may release
 }
 
 // The poses of the model found are good: photographs with fewer matches may join it. The mapper goes
@@ -332,11 +312,9 @@ static bool is_marked(const struct calibration *c)
 {
     uint8_t *data = NULL;
     size_t size;
-    char *path = orl_job_path(c->job, WORK "/matched");
-    bool same = path && orl_file_read(NULL, path, 64, &data, &size) == ORL_OK &&
+    bool same = orl_file_read(NULL, ORL_PATH(c->job->dir, WORK "/matched"), 64, &data, &size) == ORL_OK &&
                 strcmp((const char *)data, c->job->keys[ORL_STAGE_CALIBRATE]) == 0;
     free(data);
-    free(path);
     return same;
 }
 
@@ -398,20 +376,15 @@ static enum orl_result finish(struct calibration *c)
     const struct orl_job *job = c->job;
     if (registered(c) < 3)
         return fail_to_place(c);
-    char *model = orl_job_path(job, WORK "/model");
-    ORL_TRY_MEMORY(model);
-    enum orl_result result = orl_dir_remove(job->log, model);
-    ORL_THEN(result, orl_job_remove(job, NORMALISED));
-    ORL_THEN(result, orl_parts_remove(job));
-    if (result == ORL_OK && rename(c->best.path, model) != 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
-    free(model);
-    for (int i = 0; result == ORL_OK && i < c->tries; i++) {
-        char *path = orl_job_path(job, WORK "/models-%d", i);
-        result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    return result == ORL_OK ? orl_job_replace(job, WORK, DONE) : result;
+    const char *model = ORL_PATH(job->dir, WORK "/model");
+    ORL_TRY(orl_dir_remove(job->log, model));
+    ORL_TRY(orl_job_remove(job, NORMALISED));
+    ORL_TRY(orl_parts_remove(job));
+    if (rename(c->best.path, model) != 0)
+        return orl_fail(job->log, ORL_ERR_IO, "%s: %s", model, strerror(errno));
+    for (int i = 0; i < c->tries; i++)
+        ORL_TRY(orl_dir_remove(job->log, ORL_PATH(job->dir, WORK "/models-%d", i)));
+    return orl_job_replace(job, WORK, DONE);
 }
 
 static void name_left_out(const struct calibration *c, json_t *record)

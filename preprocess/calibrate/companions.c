@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/companions.h"
 
-#include <stdlib.h>
 
 #include "scene/linear.h"
 #include "scene/remap.h"
@@ -73,15 +72,12 @@ static enum orl_result write_one(struct orl_job *job, enum orl_companion which,
                                  const struct orl_colmap_image *image, const char *out)
 {
     struct orl_image given = {0}, undistorted = {0};
-    char *path = orl_job_path(job, "%s/%s%s", out, image->name, companions[which].ending);
-    enum orl_result result =
-        path ? companions[which].read(job, orl_job_find(job, image->name), &given)
-             : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, "%s/%s%s", out, image->name, companions[which].ending);
+    enum orl_result result = companions[which].read(job, orl_job_find(job, image->name), &given);
     ORL_THEN(result, undistort(job, model, image, &given, &undistorted));
     ORL_THEN(result, companions[which].write(job->log, path, &undistorted));
     orl_image_finish(&given);
     orl_image_finish(&undistorted);
-    free(path);
     return result;
 }
 

@@ -69,16 +69,13 @@ enum orl_result orl_features_link_masks(const struct orl_job *job)
 {
     if (!job->params->masks_dir)
         return ORL_OK;
-    enum orl_result result = orl_job_fresh_dir(job, MASKS);
-    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+    ORL_TRY(orl_job_fresh_dir(job, MASKS));
+    for (size_t i = 0; i < job->source_count; i++) {
         const struct orl_source *source = &job->sources[i];
-        if (!source->mask)
-            continue;
-        char *path = orl_job_path(job, MASKS "/%s.png", source->name);
-        result = path ? orl_job_link(job, source->mask, path) : ORL_ERR_MEMORY;
-        free(path);
+        if (source->mask)
+            ORL_TRY(orl_job_link(job, source->mask, ORL_PATH(job->dir, MASKS "/%s.png", source->name)));
     }
-    return result;
+    return ORL_OK;
 }
 
 static void feature_settings(const struct orl_job *job, bool costly, struct orl_colmap_args *args)
@@ -105,35 +102,25 @@ static enum orl_result extract(struct orl_job *job, const struct orl_features_ru
                                const struct orl_names *names, int size, double done, double total)
 {
     struct orl_colmap_args args = {0};
-    char *list = orl_job_path(job, "%s.txt", run->database);
-    char *database = orl_job_path(job, "%s.db", run->database), *masks = orl_job_path(job, MASKS);
-    char *photos = orl_job_path(job, orl_job_has(job, ORL_CALIBRATE_NORMALISED)
-                                         ? ORL_CALIBRATE_NORMALISED : ".oriel/photos");
-    enum orl_result result = list && database && masks && photos ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_job_write_list(job, list, names));
-    if (result != ORL_OK)
-        goto end;
+    const char *list = ORL_PATH(job->dir, "%s.txt", run->database);
+    bool normalised = orl_job_has(job, ORL_CALIBRATE_NORMALISED);
+    ORL_TRY(orl_job_write_list(job, list, names));
     // More parameters need more photographs to determine them.
     bool rich = size >= 8 && job->params->quality == ORL_QUALITY_HIGH;
-    orl_colmap_arg(&args, "--database_path", "%s", database);
-    orl_colmap_arg(&args, "--image_path", "%s", photos);
+    orl_colmap_arg(&args, "--database_path", "%s/%s.db", job->dir, run->database);
+    orl_colmap_arg(&args, "--image_path", "%s/%s", job->dir,
+                   normalised ? ORL_CALIBRATE_NORMALISED : ".oriel/photos");
     orl_colmap_arg(&args, "--image_list_path", "%s", list);
     orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
     orl_colmap_arg(&args, size > 1 ? "--ImageReader.single_camera"
                                    : "--ImageReader.single_camera_per_image", "1");
     orl_colmap_arg(&args, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
     if (job->params->masks_dir)
-        orl_colmap_arg(&args, "--ImageReader.mask_path", "%s", masks);
+        orl_colmap_arg(&args, "--ImageReader.mask_path", "%s/" MASKS, job->dir);
     feature_settings(job, run->costly, &args);
-    result = orl_job_colmap(job, &(struct orl_colmap_run){
+    return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "feature_extractor", .step = "features", .done = done,
         .share = (double)names->count, .total = total}, &args);
-end:
-    free(list);
-    free(masks);
-    free(database);
-    free(photos);
-    return result;
 }
 
 // Names of the photographs of a shared camera, or of all cameras that have one photograph, that lie

@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/mapper.h"
 
-#include <stdlib.h>
 
 #include "preprocess/calibrate/match.h"
 #include "preprocess/job/colmap_run.h"
@@ -39,19 +38,11 @@ static void incremental_settings(const struct orl_mapper_run *run, struct orl_co
 }
 
 // The database, the photographs and the seed, which all mappers take.
-static enum orl_result common_settings(const struct orl_job *job, struct orl_colmap_args *args)
+static void common_settings(const struct orl_job *job, struct orl_colmap_args *args)
 {
-    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    char *photos = orl_job_path(job, ".oriel/photos");
-    if (database && photos) {
-        orl_colmap_arg(args, "--database_path", "%s", database);
-        orl_colmap_arg(args, "--image_path", "%s", photos);
-        orl_colmap_arg(args, "--random_seed", "%u", job->params->seed);
-    }
-    enum orl_result result = database && photos ? ORL_OK : ORL_ERR_MEMORY;
-    free(database);
-    free(photos);
-    return result;
+    orl_colmap_arg(args, "--database_path", "%s/" ORL_CALIBRATE_DATABASE, job->dir);
+    orl_colmap_arg(args, "--image_path", "%s/.oriel/photos", job->dir);
+    orl_colmap_arg(args, "--random_seed", "%u", job->params->seed);
 }
 
 enum orl_result orl_mapper_run(struct orl_job *job, const struct orl_mapper_run *run)
@@ -61,7 +52,7 @@ enum orl_result orl_mapper_run(struct orl_job *job, const struct orl_mapper_run 
         [ORL_MAPPER_GLOBAL] = "global_mapper"};
     struct orl_colmap_args args = {0};
     enum orl_mapper mapper = run->from || run->loose ? ORL_MAPPER_INCREMENTAL : run->mapper;
-    ORL_TRY(common_settings(job, &args));
+    common_settings(job, &args);
     orl_colmap_arg(&args, "--output_path", "%s", run->out);
     if (mapper == ORL_MAPPER_GLOBAL && run->straight)
         orl_colmap_arg(&args, "--GlobalMapper.ba_refine_extra_params", "0");
@@ -90,7 +81,7 @@ enum orl_result orl_mapper_refine(struct orl_job *job, const char *from, const c
                                   bool straight)
 {
     struct orl_colmap_args args = {0};
-    ORL_TRY(common_settings(job, &args));
+    common_settings(job, &args);
     orl_colmap_arg(&args, "--input_path", "%s", from);
     orl_colmap_arg(&args, "--output_path", "%s", out);
     ORL_TRY(orl_job_colmap(job, &(struct orl_colmap_run){

@@ -27,7 +27,7 @@ enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs)
 static void matcher_settings(const struct orl_job *job, const char *database, bool guided,
                              struct orl_colmap_args *args)
 {
-    orl_colmap_arg(args, "--database_path", "%s", database);
+    orl_colmap_arg(args, "--database_path", "%s/%s", job->dir, database);
     orl_colmap_arg(args, "--random_seed", "%u", job->params->seed);
     orl_colmap_arg(args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
     orl_colmap_arg(args, "--SiftMatching.guided_matching", "%d", guided);
@@ -37,9 +37,7 @@ static void matcher_settings(const struct orl_job *job, const char *database, bo
 static enum orl_result match_by_colmap(struct orl_job *job, bool sequential, bool guided)
 {
     struct orl_colmap_args args = {0};
-    char *database = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    ORL_TRY_MEMORY(database);
-    matcher_settings(job, database, guided, &args);
+    matcher_settings(job, ORL_CALIBRATE_DATABASE, guided, &args);
     if (sequential) {
         orl_colmap_arg(&args, "--SequentialMatching.overlap", "20");
     } else {
@@ -47,11 +45,9 @@ static enum orl_result match_by_colmap(struct orl_job *job, bool sequential, boo
         size_t block = job->source_count / 8;
         orl_colmap_arg(&args, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
     }
-    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
+    return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = sequential ? "sequential_matcher" : "exhaustive_matcher", .step = "matching",
         .share = 1, .total = 1}, &args);
-    free(database);
-    return result;
 }
 
 // --- pairs that Oriel chooses ---
@@ -85,11 +81,7 @@ static enum orl_result name_pairs(const struct orl_job *job, const struct orl_pa
 enum orl_result orl_match_open_database(const struct orl_job *job, const char *name,
                                         struct orl_database **db)
 {
-    *db = NULL;
-    char *path = orl_job_path(job, "%s", name);
-    enum orl_result result = path ? orl_database_open(job->log, path, db) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_database_open(job->log, ORL_PATH(job->dir, "%s", name), db);
 }
 
 static enum orl_result hide_spaces(const struct orl_job *job, const char *database, bool hide)
@@ -125,14 +117,12 @@ static enum orl_result verify(struct orl_job *job, const char *name,
     struct orl_colmap_args args = {0};
     struct orl_names lines = {0};
     double share = job->colmap_cuda ? 1 : VERIFYING;
-    char *database = orl_job_path(job, "%s", name);
-    char *path = orl_job_path(job, "%s.pairs.txt", name);
-    enum orl_result result = database && path ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, name_pairs(job, list->items + first, count, &lines));
+    const char *path = ORL_PATH(job->dir, "%s.pairs.txt", name);
+    enum orl_result result = name_pairs(job, list->items + first, count, &lines);
     ORL_THEN(result, orl_job_write_list(job, path, &lines));
     ORL_THEN(result, hide_spaces(job, name, true));
     if (result == ORL_OK) {
-        matcher_settings(job, database, false, &args);
+        matcher_settings(job, name, false, &args);
         orl_colmap_arg(&args, "--match_list_path", "%s", path);
         orl_colmap_arg(&args, "--match_type", "pairs");
         result = orl_job_colmap(job, &(struct orl_colmap_run){
@@ -142,8 +132,6 @@ static enum orl_result verify(struct orl_job *job, const char *name,
     }
     ORL_THEN(result, hide_spaces(job, name, false));
     orl_names_finish(&lines);
-    free(database);
-    free(path);
     return result;
 }
 

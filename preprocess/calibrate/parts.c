@@ -31,12 +31,11 @@ static json_t *photo_state(const struct orl_source *source, int group)
 bool orl_parts_begun(const struct orl_job *job)
 {
     json_t *state = NULL;
-    char *path = orl_job_path(job, STATE);
-    bool begun = path && orl_path_is_file(path) && orl_json_read(NULL, path, &state) == ORL_OK;
+    const char *path = ORL_PATH(job->dir, STATE);
+    bool begun = orl_path_is_file(path) && orl_json_read(NULL, path, &state) == ORL_OK;
     const char *key = begun ? orl_json_text(state, "key") : NULL;
     begun = key && strcmp(key, job->keys[ORL_STAGE_CALIBRATE]) == 0;
     json_decref(state);
-    free(path);
     return begun;
 }
 
@@ -49,11 +48,9 @@ enum orl_result orl_parts_begin(struct orl_job *job, const struct orl_camera_gro
     json_t *state = json_pack("{s:s, s:b, s:o}", "key", job->keys[ORL_STAGE_CALIBRATE], "masks",
                               p->masks_dir != NULL, "photographs", photos);
     orl_arguments_settings(state, orl_prepare_options(), p, "parts");
-    char *path = orl_job_path(job, STATE);
-    enum orl_result result = path && state ? orl_features_link_masks(job) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_json_write(job->log, path, state));
+    enum orl_result result = state ? orl_features_link_masks(job) : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_json_write(job->log, ORL_PATH(job->dir, STATE), state));
     json_decref(state);
-    free(path);
     return result;
 }
 
@@ -85,15 +82,14 @@ static enum orl_result read_state(struct orl_job *job, struct orl_prepare_params
                                   struct orl_camera_groups *groups)
 {
     json_t *state = NULL;
-    char *path = orl_job_path(job, STATE);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !orl_path_is_file(path))
-        result = orl_fail(job->log, ORL_ERR_DATA, "%s: no calibration has begun: run oriel prepare "
-                          "PHOTOS --out %s --until collect first", job->dir, job->dir);
-    ORL_THEN(result, orl_json_read(job->log, path, &state));
+    const char *path = ORL_PATH(job->dir, STATE);
+    if (!orl_path_is_file(path))
+        return orl_fail(job->log, ORL_ERR_DATA, "%s: no calibration has begun: run oriel prepare "
+                        "PHOTOS --out %s --until collect first", job->dir, job->dir);
+    ORL_TRY(orl_json_read(job->log, path, &state));
     const json_t *photos = json_object_get(state, "photographs");
     size_t count = json_array_size(photos);
-    ORL_THEN(result, orl_arguments_take(job->log, state, orl_prepare_options(), params, "parts"));
+    enum orl_result result = orl_arguments_take(job->log, state, orl_prepare_options(), params, "parts");
     params->masks_dir = json_is_true(json_object_get(state, "masks")) ? "masks" : NULL;
     if (result == ORL_OK) {
         job->sources = orl_array(job->log, count + 1, sizeof *job->sources);
@@ -104,53 +100,40 @@ static enum orl_result read_state(struct orl_job *job, struct orl_prepare_params
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = read_photo(job, json_array_get(photos, i), groups);
     json_decref(state);
-    free(path);
     return result;
 }
 
 // --- the files of parts ---
 
-// WORK/features-0002-of-0007, or with `extension` .tmp while it is being made.
-static char *part_name(const struct orl_log *log, enum orl_part_step step, int part, int parts,
-                       const char *extension)
-{
-    return orl_format(log, WORK "/%s-%06d-of-%06d%s", orl_part_step_names[step], part + 1, parts,
-                      extension);
-}
+// WORK/features-0002-of-0007, or with `extension` .tmp while it is being made (ORL_PATH).
+#define PART_NAME(step, part, parts, extension) \
+    ORL_PATH(WORK, "%s-%06d-of-%06d" extension, orl_part_step_names[step], (part) + 1, parts)
 
 // The number of parts of which all are there; 0: none.
 static enum orl_result find_parts(const struct orl_job *job, enum orl_part_step step, int *parts)
 {
     struct orl_names names = {0};
-    char *dir = orl_job_path(job, WORK), form[64];
-    enum orl_result result = dir ? orl_dir_list(job->log, dir, &names) : ORL_ERR_MEMORY;
+    char form[64];
     *parts = 0;
+    ORL_TRY(orl_dir_list(job->log, ORL_PATH(job->dir, WORK), &names));
     snprintf(form, sizeof form, "%s-%%d-of-%%d.db", orl_part_step_names[step]);
-    for (size_t i = 0; result == ORL_OK && i < names.count && !*parts; i++) {
+    for (size_t i = 0; i < names.count && !*parts; i++) {
         int part, of, there = 0;
         if (sscanf(names.items[i], form, &part, &of) != 2 || part != 1 || of < 1)
             continue;
-        for (int k = 0; k < of; k++) {
-            char *name = part_name(job->log, step, k, of, ".db");
-            there += name && orl_job_has(job, name);
-            free(name);
-        }
+        for (int k = 0; k < of; k++)
+            there += orl_job_has(job, PART_NAME(step, k, of, ".db"));
         *parts = there == of ? of : 0;
     }
     orl_names_finish(&names);
-    free(dir);
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result rename_in(const struct orl_job *job, const char *from, const char *to)
 {
-    char *source = orl_job_path(job, "%s", from), *target = orl_job_path(job, "%s", to);
-    enum orl_result result = source && target ? orl_flush(job->log, source) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && rename(source, target) != 0)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", target, strerror(errno));
-    free(source);
-    free(target);
-    return result;
+    const char *source = ORL_PATH(job->dir, "%s", from), *target = ORL_PATH(job->dir, "%s", to);
+    ORL_TRY(orl_flush(job->log, source));
+    return rename(source, target) == 0 ? ORL_OK : orl_fail(job->log, ORL_ERR_IO, "%s: %s", target, strerror(errno));
 }
 
 // --- the jobs ---
@@ -160,7 +143,7 @@ struct part {
     const struct orl_camera_groups *groups;
     enum orl_part_step step;
     int index, count;
-    char *stem, *temp, *temp_db, *final_db; // owned
+    const char *stem, *temp, *temp_db, *final_db;
 };
 
 static enum orl_result run_features(const struct part *part)
@@ -180,19 +163,11 @@ static enum orl_result join_features(const struct part *part)
     if (result == ORL_OK && !parts)
         return orl_fail(job->log, ORL_ERR_DATA, "%s: features of some part are missing", job->dir);
     for (int k = 0; result == ORL_OK && k < parts; k++) {
-        char *name = part_name(job->log, ORL_PART_FEATURES, k, parts, ".db");
-        char *from = name ? orl_job_path(job, "%s", name) : NULL;
-        char *to = orl_job_path(job, "%s", part->temp_db);
-        result = from && to ? ORL_OK : ORL_ERR_MEMORY;
-        if (result == ORL_OK && k == 0)
-            result = orl_file_copy(job->log, from, to);
-        if (result == ORL_OK && k == 0)
-            result = orl_match_open_database(job, part->temp_db, &db);
-        else if (result == ORL_OK)
-            result = orl_database_add_photographs(db, from);
-        free(name);
-        free(from);
-        free(to);
+        const char *from = ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_FEATURES, k, parts, ".db"));
+        if (k == 0)
+            result = orl_file_copy(job->log, from, ORL_PATH(job->dir, "%s", part->temp_db));
+        ORL_THEN(result, k == 0 ? orl_match_open_database(job, part->temp_db, &db)
+                                : orl_database_add_photographs(db, from));
     }
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         size_t first = 0;
@@ -213,10 +188,8 @@ static enum orl_result write_pairs(const struct orl_job *job, const struct orl_p
                                                (json_int_t)list->items[i].b));
     json_t *root = json_pack("{s:I, s:f, s:o}", "tried", (json_int_t)summary->tried, "choosing_s",
                              summary->choosing_s, "pairs", pairs);
-    char *path = orl_job_path(job, PAIRS);
-    enum orl_result result = path && root ? orl_json_write(job->log, path, root) : ORL_ERR_MEMORY;
+    enum orl_result result = root ? orl_json_write(job->log, ORL_PATH(job->dir, PAIRS), root) : ORL_ERR_MEMORY;
     json_decref(root);
-    free(path);
     return result;
 }
 
@@ -224,8 +197,8 @@ static enum orl_result read_pairs(const struct orl_job *job, struct orl_pair_lis
                                   struct orl_match_summary *summary)
 {
     json_t *root = NULL;
-    char *path = orl_job_path(job, PAIRS);
-    enum orl_result result = path ? orl_json_read(job->log, path, &root) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, PAIRS);
+    enum orl_result result = orl_json_read(job->log, path, &root);
     const json_t *pairs = json_object_get(root, "pairs");
     size_t count = json_array_size(pairs);
     *list = (struct orl_pair_list){.items = orl_array(job->log, count + 1, sizeof *list->items)};
@@ -243,7 +216,6 @@ static enum orl_result read_pairs(const struct orl_job *job, struct orl_pair_lis
         .tried = (size_t)json_integer_value(json_object_get(root, "tried")), .chosen = list->count,
         .choosing_s = json_number_value(json_object_get(root, "choosing_s"))};
     json_decref(root);
-    free(path);
     return result;
 }
 
@@ -264,18 +236,16 @@ static enum orl_result run_matches(const struct part *part)
     struct orl_pair_list list = {0};
     struct orl_match_summary summary;
     struct orl_database *db = NULL;
-    char *all = part_name(job->log, ORL_PART_PAIRS, 0, 1, ".db");
-    char *from = all ? orl_job_path(job, "%s", all) : NULL;
-    char *to = orl_job_path(job, "%s", part->temp_db);
+    const char *from = ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_PAIRS, 0, 1, ".db"));
     bool *used = orl_array(job->log, job->source_count + 1, sizeof *used);
-    enum orl_result result = from && to && used ? read_pairs(job, &list, &summary) : ORL_ERR_MEMORY;
+    enum orl_result result = used ? read_pairs(job, &list, &summary) : ORL_ERR_MEMORY;
     size_t begin = list.count * (size_t)part->index / (size_t)part->count;
     size_t end = list.count * ((size_t)part->index + 1) / (size_t)part->count;
     struct orl_pair_list own = {.items = list.items + begin, .count = end - begin};
     for (size_t i = begin; result == ORL_OK && i < end; i++)
         used[list.items[i].a] = used[list.items[i].b] = true;
     ORL_THEN(result, orl_job_remove(job, part->temp_db));
-    ORL_THEN(result, orl_database_create_like(job->log, to, from, &db));
+    ORL_THEN(result, orl_database_create_like(job->log, ORL_PATH(job->dir, "%s", part->temp_db), from, &db));
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
         if (used[i])
             result = orl_database_take_features(db, job->sources[i].name);
@@ -284,9 +254,6 @@ static enum orl_result run_matches(const struct part *part)
     ORL_THEN(result, orl_match_list(job, part->temp_db, &own));
     orl_pairs_finish(&list);
     free(used);
-    free(all);
-    free(from);
-    free(to);
     return result;
 }
 
@@ -309,24 +276,18 @@ static enum orl_result run_part(struct orl_job *job, const struct orl_camera_gro
                                 enum orl_part_step step, int index, int count)
 {
     struct part part = {.job = job, .groups = groups, .step = step, .index = index, .count = count,
-                        .stem = part_name(job->log, step, index, count, ""),
-                        .temp = part_name(job->log, step, index, count, ".tmp"),
-                        .temp_db = part_name(job->log, step, index, count, ".tmp.db"),
-                        .final_db = part_name(job->log, step, index, count, ".db")};
-    bool named = part.stem && part.temp && part.temp_db && part.final_db, taken = false;
-    char *lock = named ? orl_job_path(job, "%s.lock", part.stem) : NULL;
+                        .stem = PART_NAME(step, index, count, ""),
+                        .temp = PART_NAME(step, index, count, ".tmp"),
+                        .temp_db = PART_NAME(step, index, count, ".tmp.db"),
+                        .final_db = PART_NAME(step, index, count, ".db")};
+    bool taken = false;
     int fd = -1;
-    enum orl_result result = lock ? orl_lock(job->log, lock, &fd, &taken) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, "%s.lock", part.stem), &fd, &taken);
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is at work on it",
                           part.stem);
     ORL_THEN(result, run_locked(&part));
     orl_unlock(&fd);
-    free(lock);
-    free(part.stem);
-    free(part.temp);
-    free(part.temp_db);
-    free(part.final_db);
     return result;
 }
 
@@ -357,25 +318,16 @@ enum orl_result orl_parts_join(struct orl_job *job, struct orl_match_summary *su
     *joined = false;
     if (result != ORL_OK || !parts)
         return result;
-    char *name = part_name(job->log, ORL_PART_PAIRS, 0, 1, ".db");
-    char *from = name ? orl_job_path(job, "%s", name) : NULL;
-    char *to = orl_job_path(job, ORL_CALIBRATE_DATABASE);
-    result = from && to ? orl_file_copy(job->log, from, to) : ORL_ERR_MEMORY;
+    result = orl_file_copy(job->log, ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_PAIRS, 0, 1, ".db")),
+                           ORL_PATH(job->dir, ORL_CALIBRATE_DATABASE));
     ORL_THEN(result, read_pairs(job, &list, summary));
     ORL_THEN(result, orl_match_open_database(job, ORL_CALIBRATE_DATABASE, &db));
-    for (int k = 0; result == ORL_OK && k < parts; k++) {
-        char *part = part_name(job->log, ORL_PART_MATCHES, k, parts, ".db");
-        char *path = part ? orl_job_path(job, "%s", part) : NULL;
-        result = path ? orl_database_add_matches(db, path) : ORL_ERR_MEMORY;
-        free(part);
-        free(path);
-    }
+    for (int k = 0; result == ORL_OK && k < parts; k++)
+        result = orl_database_add_matches(
+            db, ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_MATCHES, k, parts, ".db")));
     *joined = result == ORL_OK;
     orl_database_close(&db);
     orl_pairs_finish(&list);
-    free(name);
-    free(from);
-    free(to);
     return result;
 }
 
@@ -383,17 +335,11 @@ enum orl_result orl_parts_remove(const struct orl_job *job)
 {
     static const char *const kinds[] = {"features-", "pairs-", "matches-", "work.", "chosen."};
     struct orl_names names = {0};
-    char *dir = orl_job_path(job, WORK);
-    enum orl_result result = dir ? orl_dir_list(job->log, dir, &names) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_dir_list(job->log, ORL_PATH(job->dir, WORK), &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++)
-        for (size_t k = 0; result == ORL_OK && k < ORL_COUNT(kinds); k++) {
-            if (strncmp(names.items[i], kinds[k], strlen(kinds[k])) != 0)
-                continue;
-            char *path = orl_path_join(job->log, dir, names.items[i]);
-            result = path ? orl_dir_remove(job->log, path) : ORL_ERR_MEMORY;
-            free(path);
-        }
+        for (size_t k = 0; result == ORL_OK && k < ORL_COUNT(kinds); k++)
+            if (strncmp(names.items[i], kinds[k], strlen(kinds[k])) == 0)
+                result = orl_dir_remove(job->log, ORL_PATH(job->dir, WORK "/%s", names.items[i]));
     orl_names_finish(&names);
-    free(dir);
     return result;
 }

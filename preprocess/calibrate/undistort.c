@@ -1,10 +1,7 @@
 #include "preprocess/calibrate/undistort.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "preprocess/calibrate/companions.h"
 #include "preprocess/job/colmap_run.h"
 
@@ -13,22 +10,13 @@
 static enum orl_result run_undistorter(struct orl_job *job)
 {
     struct orl_colmap_args args = {0};
-    char *photos = orl_job_path(job, ".oriel/photos"), *out = orl_job_path(job, WORK);
-    char *model = orl_job_path(job, ".oriel/calibrate/model");
-    enum orl_result result = photos && out && model ? orl_job_fresh_dir(job, WORK) : ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        goto end;
-    orl_colmap_arg(&args, "--image_path", "%s", photos);
-    orl_colmap_arg(&args, "--input_path", "%s", model);
-    orl_colmap_arg(&args, "--output_path", "%s", out);
+    ORL_TRY(orl_job_fresh_dir(job, WORK));
+    orl_colmap_arg(&args, "--image_path", "%s/.oriel/photos", job->dir);
+    orl_colmap_arg(&args, "--input_path", "%s/.oriel/calibrate/model", job->dir);
+    orl_colmap_arg(&args, "--output_path", "%s/" WORK, job->dir);
     orl_colmap_arg(&args, "--max_image_size", "%d", orl_prepare_max_size(job->params));
-    result = orl_job_colmap(job, &(struct orl_colmap_run){
+    return orl_job_colmap(job, &(struct orl_colmap_run){
         .command = "image_undistorter", .step = "undistort", .share = 1, .total = 1}, &args);
-end:
-    free(photos);
-    free(out);
-    free(model);
-    return result;
 }
 
 // COLMAP makes all pictures as small as it is told, but leaves cameras whose distortion is exactly zero
@@ -37,18 +25,17 @@ static enum orl_result limit_cameras(const struct orl_job *job)
 {
     struct orl_colmap_model model = {0};
     const int most = orl_prepare_max_size(job->params);
-    char *dir = orl_job_path(job, WORK "/sparse");
+    const char *dir = ORL_PATH(job->dir, WORK "/sparse");
     bool limited = false;
-    enum orl_result result = dir ? orl_colmap_read(job->log, dir, &model) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_colmap_read(job->log, dir, &model);
     for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
         const struct orl_colmap_camera *large = orl_colmap_camera_by_id(&model, model.images[i].camera_id);
         const struct orl_camera *c = &large->pinhole;
         int width, height;
         if (c->width <= most && c->height <= most)
             continue;
-        char *path = orl_job_path(job, WORK "/images/%s", model.images[i].name);
-        result = path ? orl_picture_size(job->log, path, &width, &height) : ORL_ERR_MEMORY;
-        free(path);
+        result = orl_picture_size(job->log, ORL_PATH(job->dir, WORK "/images/%s", model.images[i].name), &width,
+                                  &height);
         if (result == ORL_OK) {
             const struct orl_camera small = orl_camera_resized(c, width, height);
             model.cameras[large - model.cameras] = orl_colmap_pinhole(large->id, &small);
@@ -58,7 +45,6 @@ static enum orl_result limit_cameras(const struct orl_job *job)
     if (result == ORL_OK && limited)
         result = orl_colmap_write(job->log, dir, &model);
     orl_colmap_finish(&model);
-    free(dir);
     return result;
 }
 
@@ -70,9 +56,8 @@ static enum orl_result check_photo(const struct orl_job *job,
     const struct orl_camera *camera =
         &orl_colmap_camera_by_id(model, image->camera_id)->pinhole;
     struct orl_image picture = {0};
-    char *path = orl_job_path(job, WORK "/images/%s", image->name);
-    enum orl_result result = path ? orl_picture_read(job->log, path, 1, &picture)
-                                  : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(job->dir, WORK "/images/%s", image->name);
+    enum orl_result result = orl_picture_read(job->log, path, 1, &picture);
     if (result == ORL_OK && (picture.width != camera->width || picture.height != camera->height))
         result = orl_fail(job->log, ORL_ERR_EXTERNAL, "%s: %dx%d pixels, but COLMAP's camera has "
                           "%dx%d", path, picture.width, picture.height, camera->width,
@@ -80,7 +65,6 @@ static enum orl_result check_photo(const struct orl_job *job,
     else if (result != ORL_OK && result != ORL_ERR_MEMORY)
         result = orl_fail(job->log, ORL_ERR_IO, "%s: COLMAP did not write it whole", path);
     orl_image_finish(&picture);
-    free(path);
     return result;
 }
 
