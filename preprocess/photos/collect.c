@@ -286,13 +286,10 @@ static enum orl_result choose_test(struct orl_job *job)
 
 static enum orl_result link_photos(struct orl_job *job)
 {
-    enum orl_result result = orl_job_fresh_dir(job, ".oriel/photos");
-    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
-        char *path = orl_job_path(job, ".oriel/photos/%s", job->sources[i].name);
-        result = path ? orl_job_link(job, job->sources[i].path, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    return result;
+    ORL_TRY(orl_job_fresh_dir(job, ".oriel/photos"));
+    for (size_t i = 0; i < job->source_count; i++)
+        ORL_TRY(orl_job_link(job, job->sources[i].path, ORL_PATH(job->dir, ".oriel/photos/%s", job->sources[i].name)));
+    return ORL_OK;
 }
 
 // Names the folder when the input was a folder.

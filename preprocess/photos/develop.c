@@ -28,12 +28,6 @@ char *orl_develop_name(const struct orl_log *log, const char *name)
 
 // --- floating point photographs: choice of white ---
 
-static char *cache_path(const struct orl_job *job, const struct orl_source *source,
-                        const char *end)
-{
-    return orl_job_path(job, ".oriel/developed/%016" PRIx64 "%s", source->hash, end);
-}
-
 // log2 of the geometric mean of all pixels that are not black.
 static double log_average(const struct orl_image *image)
 {
@@ -57,23 +51,17 @@ static enum orl_result read_light(const struct orl_job *job, const struct orl_so
     uint8_t *text = NULL;
     size_t size = 0;
     char line[64];
-    char *path = cache_path(job, source, ".light");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path) &&
-        orl_file_read(NULL, path, sizeof line, &text, &size) == ORL_OK &&
-        sscanf((const char *)text, "%lf", light) == 1 && isfinite(*light))
-        goto end;
-    ORL_THEN(result, orl_picture_read_linear(job->log, source->path, &image));
-    if (result == ORL_OK) {
-        *light = log_average(&image);
-        int length = snprintf(line, sizeof line, "%a\n", *light);
-        result = orl_file_write(job->log, path, line, (size_t)length);
-    }
-end:
-    orl_image_finish(&image);
+    const char *path = ORL_PATH(job->dir, ".oriel/developed/%016" PRIx64 ".light", source->hash);
+    bool known = orl_path_is_file(path) && orl_file_read(NULL, path, sizeof line, &text, &size) == ORL_OK &&
+                 sscanf((const char *)text, "%lf", light) == 1 && isfinite(*light);
     free(text);
-    free(path);
-    return result;
+    if (known)
+        return ORL_OK;
+    ORL_TRY(orl_picture_read_linear(job->log, source->path, &image));
+    *light = log_average(&image);
+    orl_image_finish(&image);
+    int length = snprintf(line, sizeof line, "%a\n", *light);
+    return orl_file_write(job->log, path, line, (size_t)length);
 }
 
 // Chooses one factor for all photographs, so that their brightness stays comparable: the median
@@ -140,17 +128,14 @@ static enum orl_result develop(const struct orl_job *job, struct orl_source *sou
     snprintf(end, sizeof end, "%s", orl_picture_is_png(source->name) ? ".png" : ".jpg");
     if (source->unbounded)
         snprintf(end, sizeof end, ".%d.jpg", (int)log2(job->linear_scale));
-    char *path = cache_path(job, source, end);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && !orl_path_is_file(path))
-        result = write_copy(job, source, path);
-    if (result == ORL_OK) {
-        source->original = source->path;
-        source->path = path;
-        path = NULL;
-    }
-    free(path);
-    return result;
+    const char *path = ORL_PATH(job->dir, ".oriel/developed/%016" PRIx64 "%s", source->hash, end);
+    if (!orl_path_is_file(path))
+        ORL_TRY(write_copy(job, source, path));
+    char *copy = orl_strdup(job->log, path);
+    ORL_TRY_MEMORY(copy);
+    source->original = source->path;
+    source->path = copy;
+    return ORL_OK;
 }
 
 enum orl_result orl_develop(struct orl_job *job)
@@ -160,10 +145,8 @@ enum orl_result orl_develop(struct orl_job *job)
         count += needs_copy(&job->sources[i]);
     if (!count)
         return ORL_OK;
-    char *dir = orl_job_path(job, ".oriel/developed");
-    enum orl_result result = dir ? orl_dir_make(job->log, dir) : ORL_ERR_MEMORY;
-    free(dir);
-    ORL_THEN(result, choose_scale(job));
+    ORL_TRY(orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/developed")));
+    enum orl_result result = choose_scale(job);
     for (size_t i = 0; i < job->source_count && result == ORL_OK; i++) {
         struct orl_source *source = &job->sources[i];
         if (!needs_copy(source))

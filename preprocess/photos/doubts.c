@@ -10,31 +10,22 @@
 
 // --- looks, kept in .oriel/looks ---
 
-static char *look_path(const struct orl_job *job, const struct orl_source *source)
-{
-    return orl_job_path(job, ".oriel/looks/%016" PRIx64, source->hash);
-}
+#define LOOK_PATH(job, source) ORL_PATH((job)->dir, ".oriel/looks/%016" PRIx64, (source)->hash)
 
 void orl_doubts_keep_look(const struct orl_job *job, const struct orl_source *source,
                           const struct orl_image *luma)
 {
     struct orl_look look;
-    char *path = look_path(job, source), *dir = orl_job_path(job, ".oriel/looks");
-    enum orl_result result = path && dir ? orl_look_make(NULL, luma, &look) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_dir_make(NULL, dir));
-    ORL_THEN(result, orl_file_write(NULL, path, &look, sizeof look));
+    enum orl_result result = orl_look_make(NULL, luma, &look);
+    ORL_THEN(result, orl_dir_make(NULL, ORL_PATH(job->dir, ".oriel/looks")));
+    ORL_THEN(result, orl_file_write(NULL, LOOK_PATH(job, source), &look, sizeof look));
     if (result != ORL_OK)
         orl_logf(job->log, ORL_LOG_DEBUG, "%s: its look is not kept", source->name);
-    free(path);
-    free(dir);
 }
 
 bool orl_doubts_has_look(const struct orl_job *job, const struct orl_source *source)
 {
-    char *path = look_path(job, source);
-    bool has = path && orl_path_is_file(path);
-    free(path);
-    return has;
+    return orl_path_is_file(LOOK_PATH(job, source));
 }
 
 enum orl_result orl_doubts_look(const struct orl_job *job, const struct orl_source *source,
@@ -42,19 +33,18 @@ enum orl_result orl_doubts_look(const struct orl_job *job, const struct orl_sour
 {
     uint8_t *data = NULL;
     size_t size = 0;
-    char *path = look_path(job, source);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path) &&
+    const char *path = LOOK_PATH(job, source);
+    enum orl_result result = ORL_OK;
+    if (orl_path_is_file(path) &&
         orl_file_read(NULL, path, sizeof *look, &data, &size) == ORL_OK && size == sizeof *look) {
         memcpy(look, data, sizeof *look);
-    } else if (result == ORL_OK) {
+    } else {
         struct orl_image luma = {0};
         result = orl_picture_read(job->log, source->path, 1, &luma);
         ORL_THEN(result, orl_look_make(job->log, &luma, look));
         orl_image_finish(&luma);
     }
     free(data);
-    free(path);
     return result;
 }
 

@@ -128,11 +128,9 @@ static enum orl_result add_frames(struct orl_job *job, const char *given, const 
     enum orl_result result = name ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < frames->count; i++) {
         char *path = orl_path_join(job->log, dir, frames->items[i]);
-        char *full = orl_format(job->log, "%.*s_%s", (int)(strrchr(name, '.') - name), name,
-                                frames->items[i]);
+        const char *full = ORL_PATH("", "%.*s_%s", (int)(strrchr(name, '.') - name), name, frames->items[i]);
         job->given++;
-        result = path && full ? add_source(job, path, full, full, clip) : ORL_ERR_MEMORY;
-        free(full);
+        result = path ? add_source(job, path, full, full, clip) : ORL_ERR_MEMORY;
     }
     free(name);
     return result;
@@ -173,13 +171,11 @@ struct folder {
 
 static bool is_barred(const struct orl_job *job, const struct folder *folder)
 {
-    char *scene = orl_path_join(job->log, folder->path, "scene.json");
     char *masks = job->params->masks_dir ? realpath(job->params->masks_dir, NULL) : NULL;
-    bool barred = !scene || orl_path_is_file(scene) || strcmp(folder->real, job->dir) == 0 ||
-                  (masks && strcmp(folder->real, masks) == 0);
+    bool barred = orl_path_is_file(ORL_PATH(folder->path, "scene.json")) ||
+                  strcmp(folder->real, job->dir) == 0 || (masks && strcmp(folder->real, masks) == 0);
     for (const struct folder *up = folder->up; up && !barred; up = up->up)
         barred = strcmp(up->real, folder->real) == 0;
-    free(scene);
     free(masks);
     return barred;
 }

@@ -86,7 +86,7 @@ static enum orl_result copy_mask(const struct orl_job *job, struct orl_source *s
                                  const char *path, bool *empty)
 {
     struct orl_image mask = {0};
-    source->mask = orl_job_path(job, ".oriel/masks/%016" PRIx64 ".png", source->mask_hash);
+    source->mask = orl_strdup(job->log, ORL_PATH(job->dir, ".oriel/masks/%016" PRIx64 ".png", source->mask_hash));
     ORL_TRY_MEMORY(source->mask);
     bool made = orl_path_is_file(source->mask);
     enum orl_result result = orl_mask_read(job->log, made ? source->mask : path, &mask);
@@ -168,10 +168,8 @@ enum orl_result orl_masks_find(struct orl_job *job)
     if (!orl_path_is_dir(job->params->masks_dir))
         return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--masks %s: no such folder",
                         job->params->masks_dir);
-    char *copies = orl_job_path(job, ".oriel/masks");
-    enum orl_result result = copies ? orl_dir_make(job->log, copies) : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
-        result = find_mask(job, &job->sources[i], &counts);
-    free(copies);
-    return result == ORL_OK ? judge(job, &counts) : result;
+    ORL_TRY(orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/masks")));
+    for (size_t i = 0; i < job->source_count; i++)
+        ORL_TRY(find_mask(job, &job->sources[i], &counts));
+    return judge(job, &counts);
 }

@@ -75,16 +75,13 @@ enum orl_result orl_normalise(const struct orl_job *job, const char *dir, size_t
     for (size_t i = 0; wanted && result == ORL_OK && i < job->source_count; i++) {
         const struct orl_source *source = &job->sources[i];
         double ev = needed_ev(job, source, target);
-        char *path = orl_job_path(job, "%s/%s", dir, source->name);
+        const char *path = ORL_PATH(job->dir, "%s/%s", dir, source->name);
         if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;
-        else if (!path)
-            result = ORL_ERR_MEMORY;
         else
             result = ev > 0 ? write_copy(job, source, ev, path)
                             : orl_job_link(job, source->path, path);
         *copies += ev > 0;
-        free(path);
     }
     return result;
 }

@@ -92,24 +92,19 @@ size_t orl_frames_choose(const float *blur, size_t count, size_t stretch, size_t
 static enum orl_result write_frames(const struct clip *clip, const size_t *chosen, size_t from,
                                     size_t to, const char *dir)
 {
-    const struct orl_log *log = clip->job->log;
-    char *pattern = orl_path_join(log, dir, "%05d.jpg"), *number = orl_format(log, "%zu", from + 1);
-    char *filter = orl_array(log, 64 + sizeof clip->video + 32 * (to - from), 1);
-    enum orl_result result = pattern && number && filter ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        char *end = filter + sprintf(filter, "%sfps=%.6f,select='", clip->video.first, clip->rate);
-        for (size_t i = from; i < to; i++)
-            end += sprintf(end, "%seq(n,%zu)", i > from ? "+" : "", chosen[i]);
-        sprintf(end, "',%snull", clip->video.colours);
-        const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
-                                    "-map", "0:V:0", "-vf", filter, "-fps_mode", "passthrough",
-                                    "-start_number", number, "-q:v", "1", "-qmin", "1", pattern,
-                                    NULL};
-        result = run_tool(clip, argv, NULL);
-    }
+    char number[24], *filter = orl_array(clip->job->log, 64 + sizeof clip->video + 32 * (to - from), 1);
+    ORL_TRY_MEMORY(filter);
+    snprintf(number, sizeof number, "%zu", from + 1);
+    char *end = filter + sprintf(filter, "%sfps=%.6f,select='", clip->video.first, clip->rate);
+    for (size_t i = from; i < to; i++)
+        end += sprintf(end, "%seq(n,%zu)", i > from ? "+" : "", chosen[i]);
+    sprintf(end, "',%snull", clip->video.colours);
+    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
+                                "-map", "0:V:0", "-vf", filter, "-fps_mode", "passthrough",
+                                "-start_number", number, "-q:v", "1", "-qmin", "1",
+                                ORL_PATH(dir, "%%05d.jpg"), NULL};
+    enum orl_result result = run_tool(clip, argv, NULL);
     free(filter);
-    free(number);
-    free(pattern);
     return result;
 }
 
@@ -125,8 +120,8 @@ static enum orl_result drop_still(const struct clip *clip, const char *dir)
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
         struct orl_image luma = {0};
         struct orl_look look;
-        char *path = orl_path_join(log, dir, names.items[i]);
-        result = path ? orl_picture_read(log, path, 1, &luma) : ORL_ERR_MEMORY;
+        const char *path = ORL_PATH(dir, "%s", names.items[i]);
+        result = orl_picture_read(log, path, 1, &luma);
         ORL_THEN(result, orl_look_make(log, &luma, &look));
         if (result == ORL_OK && i && orl_look_same_picture(&last, &look)) {
             dropped += unlink(path) == 0;
@@ -134,7 +129,6 @@ static enum orl_result drop_still(const struct clip *clip, const char *dir)
             last = look;
         }
         orl_image_finish(&luma);
-        free(path);
     }
     orl_names_finish(&names);
     if (dropped)
@@ -178,11 +172,11 @@ static enum orl_result name_folder(const struct orl_job *job, const char *path, 
 {
     uint64_t hash;
     ORL_TRY(orl_file_hash(job->log, path, &hash));
-    *dir = job->params->frames
-               ? orl_job_path(job, ".oriel/frames/%016" PRIx64 "-%d-n%d", hash, VERSION,
-                              job->params->frames)
-               : orl_job_path(job, ".oriel/frames/%016" PRIx64 "-%d-f%g", hash, VERSION,
-                              job->params->fps > 0 ? job->params->fps : FPS);
+    *dir = orl_strdup(job->log, job->params->frames
+               ? ORL_PATH(job->dir, ".oriel/frames/%016" PRIx64 "-%d-n%d", hash, VERSION,
+                          job->params->frames)
+               : ORL_PATH(job->dir, ".oriel/frames/%016" PRIx64 "-%d-f%g", hash, VERSION,
+                          job->params->fps > 0 ? job->params->fps : FPS));
     return *dir ? ORL_OK : ORL_ERR_MEMORY;
 }
 
@@ -195,8 +189,8 @@ enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **di
     enum orl_result result = name_folder(job, path, dir);
     if (result == ORL_OK && !orl_path_is_dir(*dir)) {
         static const char temp[] = ".oriel/frames.tmp";
-        char *made = orl_job_path(job, "%s", temp), *parent = orl_job_path(job, ".oriel/frames");
-        result = made && parent ? orl_dir_make(job->log, parent) : ORL_ERR_MEMORY;
+        const char *made = ORL_PATH(job->dir, "%s", temp);
+        result = orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/frames"));
         ORL_THEN(result, orl_job_fresh_dir(job, temp));
         ORL_THEN(result, make_frames(&clip, made));
         if (result == ORL_OK)
@@ -204,8 +198,6 @@ enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **di
         if (result == ORL_OK && rename(made, *dir) != 0)
             result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be renamed to %s", made, *dir);
         orl_progress_report(job->progress, "frames", 1, 1, NULL);
-        free(made);
-        free(parent);
     }
     ORL_THEN(result, orl_dir_list(job->log, *dir, names));
     free(clip.blur);
