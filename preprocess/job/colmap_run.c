@@ -129,22 +129,21 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
     const char *argv[ORL_COLMAP_ARGS_MAX + 3] = {job->colmap, run->command};
     for (size_t i = 0; i < args->count; i++)
         argv[2 + i] = i % 2 ? args->items[i] : current_name(job, args->items[i]);
-    char *log_path = orl_job_path(job, "logs/colmap.log");
+    const char *log_path = ORL_PATH(job->dir, "logs/colmap.log");
     struct watch watch = {.job = job, .run = run};
     struct orl_log held = {.level = ORL_LOG_ERROR, .print = hold_error, .priv = &watch};
     struct orl_process_params params = {.argv = argv, .log_path = log_path,
                                         .progress = job->progress, .line = watch_line,
                                         .line_priv = &watch, .env = env};
     struct orl_process_usage usage = {0};
-    enum orl_result result = ORL_ERR_MEMORY;
-    if (args->failed)
-        orl_logf(job->log, ORL_LOG_ERROR, "COLMAP %s: arguments too long, or no memory for them",
-                 run->command);
-    if (!log_path || args->failed)
-        goto end;
+    if (args->failed) {
+        args_finish(args);
+        return orl_fail(job->log, ORL_ERR_MEMORY, "COLMAP %s: arguments too long, or no memory for them",
+                        run->command);
+    }
     if (run->done == 0)
         orl_progress_report(job->progress, run->step, 0, run->total, NULL);
-    result = orl_process_run(&held, &params, &usage);
+    enum orl_result result = orl_process_run(&held, &params, &usage);
     if (result == ORL_ERR_EXTERNAL && watch.tolerated)
         result = ORL_OK;
     else if (watch.error[0])
@@ -157,8 +156,6 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
             orl_logf(job->log, ORL_LOG_ERROR, "all of COLMAP's output is in %s", log_path);
         orl_job_hint_disk(job);
     }
-end:
-    free(log_path);
     args_finish(args);
     return result;
 }

@@ -1,7 +1,6 @@
 #include "preprocess/job/job.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,20 +153,6 @@ void orl_job_close(struct orl_job *job)
 }
 
 // --- files in the scene ---
-
-char *orl_job_path(const struct orl_job *job, const char *format, ...)
-{
-    char name[4096];
-    va_list args;
-    va_start(args, format);
-    int length = vsnprintf(name, sizeof name, format, args);
-    va_end(args);
-    if (length < 0 || (size_t)length >= sizeof name) {
-        orl_logf(job->log, ORL_LOG_ERROR, "%s: a path is too long", job->dir);
-        return NULL;
-    }
-    return orl_path_join(job->log, job->dir, name);
-}
 
 bool orl_job_has(const struct orl_job *job, const char *name)
 {

@@ -106,8 +106,6 @@ void orl_source_finish(struct orl_source *source);
 
 // --- files in the scene ---
 
-// Path inside the scene; the caller releases it with free().
-char *orl_job_path(const struct orl_job *job, const char *format, ...) ORL_PRINTF(2, 3);
 // Replaces SCENE/`name` by SCENE/`temp`.
 enum orl_result orl_job_replace(const struct orl_job *job, const char *temp,
                                 const char *name) ORL_CHECK_RESULT;
