@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/companions.h"
 
-
 #include "scene/linear.h"
 #include "scene/remap.h"
 #include "preprocess/photos/develop.h"

@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/mapper.h"
 
-
 #include "preprocess/calibrate/match.h"
 #include "preprocess/job/colmap_run.h"
 
