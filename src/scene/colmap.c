@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "scene/colmap_internal.h"
 
 // From COLMAP's src/colmap/sensor/models.h, in the order of its ids. Models with one focal length have params f cx cy ...;
@@ -156,30 +155,21 @@ enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
     return ORL_OK;
 }
 
-bool orl_colmap_has(const struct orl_log *log, const char *dir, const char *name)
+bool orl_colmap_has(const char *dir, const char *name)
 {
-    char *path = orl_path_join(log, dir, name);
-    bool there = path && orl_path_is_file(path);
-    free(path);
-    return there;
-}
-
-// 1: the model is binary; 0: text; -1: there is no model.
-static int find_kind(const struct orl_log *log, const char *dir)
-{
-    return orl_colmap_has(log, dir, "cameras.bin") ? 1 : orl_colmap_has(log, dir, "cameras.txt") ? 0 : -1;
+    return orl_path_is_file(ORL_PATH(dir, "%s", name));
 }
 
 enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
                                 struct orl_colmap_model *model)
 {
     memset(model, 0, sizeof *model);
-    int kind = find_kind(log, dir);
-    if (kind < 0)
+    bool binary = orl_colmap_has(dir, "cameras.bin");
+    if (!binary && !orl_colmap_has(dir, "cameras.txt"))
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: no COLMAP model here (neither cameras.bin nor cameras.txt)", dir);
-    enum orl_result result = kind ? orl_colmap_read_binary(log, dir, model)
-                                  : orl_colmap_read_text(log, dir, model);
+    enum orl_result result = binary ? orl_colmap_read_binary(log, dir, model)
+                                    : orl_colmap_read_text(log, dir, model);
     ORL_THEN(result, orl_colmap_check(log, dir, model));
     if (result != ORL_OK)
         orl_colmap_finish(model);

@@ -11,7 +11,7 @@ enum { CAMERA_MIN = 48, IMAGE_MIN = 73, POINT_MIN = 51, POINT2D_SIZE = 24, TRACK
 
 struct reader {
     const struct orl_log *log;
-    char *path;
+    const char *path;
     uint8_t *data;
     size_t size, at;
 };
@@ -43,20 +43,6 @@ static enum orl_result take_count(struct reader *r, size_t record_min, const cha
                         r->at, (unsigned long long)*count, what, r->size - r->at - sizeof *count);
     }
     return ORL_OK;
-}
-
-static enum orl_result reader_open(const struct orl_log *log, const char *dir, const char *name,
-                                   struct reader *r)
-{
-    *r = (struct reader){.log = log, .path = orl_path_join(log, dir, name)};
-    ORL_TRY_MEMORY(r->path);
-    return orl_file_read(log, r->path, SIZE_MAX / 2, &r->data, &r->size);
-}
-
-static void reader_close(struct reader *r)
-{
-    free(r->path);
-    free(r->data);
 }
 
 static enum orl_result read_camera(struct reader *r, struct orl_colmap_camera *camera)
@@ -195,14 +181,14 @@ enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *di
                  {"images.bin", read_images, false}};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < ORL_COUNT(files) && result == ORL_OK; i++) {
-        struct reader r;
-        if (files[i].optional && !orl_colmap_has(log, dir, files[i].name))
+        struct reader r = {.log = log, .path = ORL_PATH(dir, "%s", files[i].name)};
+        if (files[i].optional && !orl_path_is_file(r.path))
             continue;
-        result = reader_open(log, dir, files[i].name, &r);
+        result = orl_file_read(log, r.path, SIZE_MAX / 2, &r.data, &r.size);
         ORL_THEN(result, files[i].read(&r, model));
         if (result == ORL_OK && r.at != r.size)
             result = bad(&r, "bytes after the end of the model");
-        reader_close(&r);
+        free(r.data);
     }
     return result;
 }

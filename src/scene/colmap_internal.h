@@ -12,7 +12,7 @@ int orl_colmap_model_focal_lengths(int model);
 int orl_colmap_model_id(const char *name);
 
 // True when a folder has a file of this name.
-bool orl_colmap_has(const struct orl_log *log, const char *dir, const char *name);
+bool orl_colmap_has(const char *dir, const char *name);
 
 // Fills camera->pinhole from model and params. NULL, or the problem in words.
 const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t width,

@@ -1,5 +1,4 @@
 // COLMAP's text model: one record per line; '#' starts a comment line.
-#include <stdlib.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -163,11 +162,10 @@ enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < ORL_COUNT(files) && result == ORL_OK; i++) {
         struct orl_text_lines l;
-        if (files[i].optional && !orl_colmap_has(log, dir, files[i].name))
+        const char *path = ORL_PATH(dir, "%s", files[i].name);
+        if (files[i].optional && !orl_path_is_file(path))
             continue;
-        char *path = orl_path_join(log, dir, files[i].name);
-        result = path ? orl_text_open(log, path, &l) : ORL_ERR_MEMORY;
-        free(path);
+        result = orl_text_open(log, path, &l);
         if (result == ORL_OK) {
             result = files[i].read(&l, model);
             orl_text_close(&l);
@@ -182,10 +180,9 @@ enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *pat
     memset(model, 0, sizeof *model);
     struct orl_text_lines l;
     int dir = (int)(orl_path_name(path) - path);
-    char *beside = orl_format(log, "%.*scameras.txt", dir, path);
-    enum orl_result result = beside ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(beside) &&
-        (result = orl_text_open(log, beside, &l)) == ORL_OK) {
+    const char *beside = ORL_PATH("", "%.*scameras.txt", dir, path);
+    enum orl_result result = ORL_OK;
+    if (orl_path_is_file(beside) && (result = orl_text_open(log, beside, &l)) == ORL_OK) {
         result = read_cameras(&l, model);
         ORL_THEN(result, orl_colmap_sort_cameras(log, beside, model));
         orl_text_close(&l);
@@ -194,7 +191,6 @@ enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *pat
         result = read_images(&l, model);
         orl_text_close(&l);
     }
-    free(beside);
     if (result != ORL_OK)
         orl_colmap_finish(model);
     return result;

@@ -137,9 +137,7 @@ enum orl_result orl_colmap_write(const struct orl_log *log, const char *dir,
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++) {
         struct buffer b = {.log = log};
         files[i].write(&b, model);
-        char *path = b.failed ? NULL : orl_path_join(log, dir, files[i].name);
-        result = path ? orl_file_write(log, path, b.data, b.size) : ORL_ERR_MEMORY;
-        free(path);
+        result = b.failed ? ORL_ERR_MEMORY : orl_file_write(log, ORL_PATH(dir, "%s", files[i].name), b.data, b.size);
         free(b.data);
     }
     return result;

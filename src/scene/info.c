@@ -1,7 +1,5 @@
 #include "scene/info.h"
 
-#include <stdlib.h>
-
 #include "core/file.h"
 #include "core/json.h"
 #include "scene/manifest.h"
@@ -68,11 +66,8 @@ json_t *orl_scene_info(const struct orl_log *log, const struct orl_scene *scene)
         json_array_append_new(photos, photo_json(&scene->photos[i]));
     }
     orl_points_bounds(&scene->points, low, high);
-    char *path = orl_path_join(log, scene->dir, "scene.json");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && orl_path_is_file(path))
-        result = orl_json_read(log, path, &manifest);
-    free(path);
+    const char *path = ORL_PATH(scene->dir, "scene.json");
+    enum orl_result result = orl_path_is_file(path) ? orl_json_read(log, path, &manifest) : ORL_OK;
     json_t *root = result != ORL_OK ? NULL : json_pack(
         "{s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I}, s:f, s:[[f,f,f],[f,f,f]], s:o, s:O*, s:O*, s:O*, s:O*, "
         "s:O*, s:O*, s:o, s:o}",

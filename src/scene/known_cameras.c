@@ -121,12 +121,9 @@ enum orl_result orl_known_find(const struct orl_log *log, const char *folder, co
     enum orl_result result = plain && (!there || *path) ? ORL_OK : ORL_ERR_MEMORY;
     while (result == ORL_OK && !*path && at) {
         at += strspn(at, "/");
-        *path = orl_path_join(log, folder, at);
-        result = *path ? ORL_OK : ORL_ERR_MEMORY;
-        if (*path && !orl_path_is_file(*path)) {
-            free(*path);
-            *path = NULL;
-        }
+        const char *next = ORL_PATH(folder, "%s", at);
+        if (orl_path_is_file(next))
+            result = (*path = orl_strdup(log, next)) ? ORL_OK : ORL_ERR_MEMORY;
         at = strchr(at, '/');
     }
     free(plain);

@@ -74,17 +74,11 @@ static enum orl_result mend_names(const struct orl_known_source *source,
 static enum orl_result read_colmap(const struct orl_known_source *source,
                                    struct orl_known_cameras *known)
 {
-    char *dir = orl_format(source->log, "%.*s", (int)(orl_path_name(source->path) - source->path),
-                           source->path);
-    enum orl_result result = dir ? orl_colmap_read(source->log, *dir ? dir : ".", &known->model)
-                                 : ORL_ERR_MEMORY;
-    free(dir);
-    ORL_THEN(result, mend_names(source, &known->model));
-    if (result == ORL_OK) {
-        known->gaps = orl_array(source->log, known->model.camera_count, sizeof *known->gaps);
-        result = known->gaps ? ORL_OK : ORL_ERR_MEMORY;
-    }
-    return result;
+    const char *dir = ORL_PATH("", "%.*s", (int)(orl_path_name(source->path) - source->path), source->path);
+    ORL_TRY(orl_colmap_read(source->log, *dir ? dir : ".", &known->model));
+    ORL_TRY(mend_names(source, &known->model));
+    known->gaps = orl_array(source->log, known->model.camera_count, sizeof *known->gaps);
+    return known->gaps ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 // --- the table ---
@@ -219,19 +213,16 @@ static size_t count_images(const char *dir)
     size_t count = 0;
     uint64_t told = 0;
     FILE *stream = NULL;
-    char *binary = orl_path_join(NULL, dir, "images.bin"), *text = orl_path_join(NULL, dir, "images.txt");
-    if (binary && orl_path_is_file(binary)) {
+    const char *binary = ORL_PATH(dir, "images.bin"), *text = ORL_PATH(dir, "images.txt");
+    if (orl_path_is_file(binary)) {
         if (orl_file_open(NULL, binary, &stream) == ORL_OK) {
             count = fread(&told, sizeof told, 1, stream) == 1 && told < SIZE_MAX ? (size_t)told : 0;
             fclose(stream);
         }
-    } else if (text && orl_path_is_file(text) &&
-               orl_colmap_read_poses(NULL, text, &model) == ORL_OK) {
+    } else if (orl_path_is_file(text) && orl_colmap_read_poses(NULL, text, &model) == ORL_OK) {
         count = model.image_count;
         orl_colmap_finish(&model);
     }
-    free(binary);
-    free(text);
     return count;
 }
 
@@ -244,8 +235,7 @@ struct models {
 
 static enum orl_result try_model(struct models *models, const char *dir)
 {
-    if (!orl_colmap_has(models->log, dir, "cameras.bin") &&
-        !orl_colmap_has(models->log, dir, "cameras.txt"))
+    if (!orl_colmap_has(dir, "cameras.bin") && !orl_colmap_has(dir, "cameras.txt"))
         return ORL_OK;
     size_t images = count_images(dir);
     models->count++;
@@ -263,11 +253,9 @@ static enum orl_result try_models(struct models *models, const char *dir)
     struct orl_names names = {0};
     enum orl_result result = orl_dir_list(models->log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *sub = orl_path_join(models->log, dir, names.items[i]);
-        result = sub ? ORL_OK : ORL_ERR_MEMORY;
-        if (sub && orl_path_is_dir(sub))
+        const char *sub = ORL_PATH(dir, "%s", names.items[i]);
+        if (orl_path_is_dir(sub))
             result = try_model(models, sub);
-        free(sub);
     }
     orl_names_finish(&names);
     return result == ORL_OK ? try_model(models, dir) : result;
@@ -282,17 +270,14 @@ static enum orl_result find_model(const struct orl_log *log, const char *dir, ch
     struct models models = {.log = log};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && !models.best && i < ORL_COUNT(bases); i++) {
-        char *base = strcmp(bases[i], ".") == 0 ? orl_strdup(log, dir)
-                                                 : orl_path_join(log, dir, bases[i]);
-        result = base ? ORL_OK : ORL_ERR_MEMORY;
-        if (base && orl_path_is_dir(base))
+        const char *base = strcmp(bases[i], ".") == 0 ? dir : ORL_PATH(dir, "%s", bases[i]);
+        if (orl_path_is_dir(base))
             result = try_models(&models, base);
-        free(base);
     }
     if (result == ORL_OK && models.count > 1)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu COLMAP models; taking the largest, %s, with %zu "
                  "photographs", dir, models.count, models.best, models.most);
-    bool text = models.best && !orl_colmap_has(log, models.best, "cameras.bin");
+    bool text = models.best && !orl_colmap_has(models.best, "cameras.bin");
     *file = result == ORL_OK && models.best
                 ? orl_path_join(log, models.best, text ? "cameras.txt" : "cameras.bin") : NULL;
     if (result == ORL_OK && models.best && !*file)
@@ -307,12 +292,10 @@ static enum orl_result find_pattern(const struct orl_log *log, const char *dir, 
 {
     struct orl_names names = {0};
     if (!strchr(pattern, '*')) {
-        char *path = orl_path_join(log, dir, pattern);
-        bool there = path && (orl_path_is_file(path) || orl_path_is_dir(path));
-        *file = there ? path : NULL;
-        if (!there)
-            free(path);
-        return path ? ORL_OK : ORL_ERR_MEMORY;
+        const char *path = ORL_PATH(dir, "%s", pattern);
+        bool there = orl_path_is_file(path) || orl_path_is_dir(path);
+        *file = there ? orl_strdup(log, path) : NULL;
+        return there && !*file ? ORL_ERR_MEMORY : ORL_OK;
     }
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
@@ -357,10 +340,7 @@ static char *base_of(const struct orl_log *log, const char *dir, const char *fil
     char *base = orl_strdup(log, file), *end;
     while (base && (end = strrchr(base, '/')) && (size_t)(end - base) > strlen(dir)) {
         *end = '\0';
-        char *images = orl_path_join(log, base, "images");
-        bool there = images && orl_path_is_dir(images);
-        free(images);
-        if (there)
+        if (orl_path_is_dir(ORL_PATH(base, "images")))
             return base;
     }
     free(base);

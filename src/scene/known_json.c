@@ -2,7 +2,6 @@
 // such files.
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -350,19 +349,17 @@ enum orl_result orl_known_read_splits(const struct orl_known_source *source,
     bool tests = false;
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++) {
         json_t *root = NULL;
-        char *path = orl_path_join(source->log, source->path, files[i].name);
+        const char *path = ORL_PATH(source->path, "%s", files[i].name);
         struct orl_known_source part = {source->log, path, source->pixel_centre, NULL};
         enum orl_known_split split = files[i].split == ORL_KNOWN_UNUSED && !tests ? ORL_KNOWN_TEST
                                                                                   : files[i].split;
-        result = path ? ORL_OK : ORL_ERR_MEMORY;
-        if (path && orl_path_is_file(path)) {
+        if (orl_path_is_file(path)) {
             result = orl_json_read(source->log, path, &root);
             part.root = root;
             ORL_THEN(result, read_frames(&part, split, known));
             tests = tests || split == ORL_KNOWN_TEST;
         }
         json_decref(root);
-        free(path);
     }
     return result;
 }

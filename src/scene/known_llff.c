@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "scene/known_internal.h"
 
 enum { NUMBERS = 17, PICTURES_MAX = 100000 };
@@ -76,8 +75,7 @@ static enum orl_result read_pose(const struct orl_known_source *source, const do
 static enum orl_result list_pictures(const struct orl_known_source *source, const char *folder,
                                      struct orl_names *names)
 {
-    char *dir = orl_path_join(source->log, folder, "images");
-    ORL_TRY_MEMORY(dir);
+    const char *dir = ORL_PATH(folder, "images");
     struct orl_names all = {0};
     enum orl_result result =
         orl_path_is_dir(dir) ? orl_dir_list(source->log, dir, &all)
@@ -87,7 +85,6 @@ static enum orl_result list_pictures(const struct orl_known_source *source, cons
         if (*all.items[i] != '.' && strcmp(all.items[i], "Thumbs.db") != 0)
             result = orl_names_add(source->log, names, all.items[i]);
     orl_names_finish(&all);
-    free(dir);
     return result;
 }
 
@@ -106,9 +103,7 @@ enum orl_result orl_known_read_llff(const struct orl_known_source *source,
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         double numbers[NUMBERS];
         memcpy(numbers, data + at + i * sizeof numbers, sizeof numbers);
-        char *path = orl_format(source->log, "images/%s", names.items[i]);
-        result = path ? read_pose(source, numbers, path, known) : ORL_ERR_MEMORY;
-        free(path);
+        result = read_pose(source, numbers, ORL_PATH("images", "%s", names.items[i]), known);
     }
     orl_names_finish(&names);
     free(data);

@@ -1,12 +1,10 @@
 // Cameras of telephones with a depth sensor: Polycam's folder of keyframes and Record3D's
 // metadata.json. Both have OpenGL's axes and the world of the telephone, y up.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "scene/json_views.h"
 #include "scene/known_internal.h"
 
@@ -72,31 +70,20 @@ enum orl_result orl_known_read_polycam(const struct orl_known_source *source,
     struct orl_known_unused unused = {.used = used};
     struct orl_names names = {0};
     enum orl_result result = ORL_OK;
-    char *dir = NULL;
     size_t which = 0;
-    for (; which < ORL_COUNT(polycam); which++) {
-        dir = orl_path_join(source->log, source->path, polycam[which][0]);
-        ORL_TRY_MEMORY(dir);
-        if (orl_path_is_dir(dir))
-            break;
-        free(dir);
-        dir = NULL;
-    }
-    if (dir)
-        result = orl_dir_list(source->log, dir, &names);
+    while (which < ORL_COUNT(polycam) && !orl_path_is_dir(ORL_PATH(source->path, "%s", polycam[which][0])))
+        which++;
+    if (which < ORL_COUNT(polycam))
+        result = orl_dir_list(source->log, ORL_PATH(source->path, "%s", polycam[which][0]), &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
         const char *name = names.items[i], *dot = strrchr(name, '.');
         if (*name == '.' || !dot || strcmp(dot, ".json") != 0)
             continue;
-        char *file = orl_path_join(source->log, dir, name);
-        char *picture = orl_format(source->log, "%s/%.*s", polycam[which][1], (int)(dot - name), name);
-        result = file && picture ? read_keyframe(source, file, picture, &unused, known) : ORL_ERR_MEMORY;
-        free(file);
-        free(picture);
+        result = read_keyframe(source, ORL_PATH(source->path, "%s/%s", polycam[which][0], name),
+                               ORL_PATH(polycam[which][1], "%.*s", (int)(dot - name), name), &unused, known);
     }
     orl_known_say_unused(source, &unused);
     orl_names_finish(&names);
-    free(dir);
     return result;
 }
 
@@ -108,10 +95,8 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
     static const char *const used[] = {"poses", "K", "w", "h", "perFrameIntrinsicCoeffs", NULL};
     static const char *const lists[] = {NULL};
     const json_t *poses = json_object_get(source->root, "poses");
-    char *rgb = orl_path_join(source->log, known->folder, "rgb");
-    ORL_TRY_MEMORY(rgb);
-    const char *folder = orl_path_is_dir(rgb) ? "rgb" : "rgbd"; // of the two kinds of export
-    free(rgb);
+    // The folder of one or the other kind of export.
+    const char *folder = orl_path_is_dir(ORL_PATH(known->folder, "rgb")) ? "rgb" : "rgbd";
     const json_t *lenses = json_object_get(source->root, "perFrameIntrinsicCoeffs");
     double k[9];
     if (!orl_json_read_numbers(json_object_get(source->root, "K"), 9, k))

@@ -95,12 +95,10 @@ static enum orl_result read_list(const struct orl_log *log, const char *folder,
     enum orl_result result = ORL_OK;
     bool found = false;
     for (size_t i = 0; i < ORL_COUNT(known) && !found; i++) {
-        char *path = orl_path_join(log, folder, known[i]);
-        ORL_TRY_MEMORY(path);
+        const char *path = ORL_PATH(folder, "%s", known[i]);
         found = orl_path_is_file(path);
         if (found)
             result = orl_text_open(log, path, &l);
-        free(path);
     }
     if (!found)
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: Bundler's cameras need list.txt, the names of "

@@ -282,8 +282,7 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
             asked |= strcmp(names[i], name) == 0;
         if (!asked || !told)
             continue;
-        char *path = orl_path_join(log, dir, name);
-        ORL_TRY_MEMORY(path);
+        const char *path = ORL_PATH(dir, "%s", name);
         // An untrusted manifest may name any file, so only files inside the scene are read.
         bool read = orl_path_is_inside(dir, path) && orl_path_is_file(path) &&
                     orl_file_checksum(NULL, path, sum) == ORL_OK;
@@ -292,7 +291,6 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
                      read ? "changed since the scene was prepared" : "missing or cannot be read");
             ++*bad;
         }
-        free(path);
     }
     return ORL_OK;
 }
@@ -337,26 +335,18 @@ enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, s
 {
     json_t *root = NULL;
     *bad = *files = 0;
-    char *path = orl_path_join(log, dir, "scene.json");
-    char *points = orl_path_join(log, dir, "points.ply");
-    char *levels = orl_path_join(log, dir, ORL_LOD_NAME);
-    enum orl_result result = path && points && levels ? orl_json_read(log, path, &root)
-                                                      : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        // points.ply may be removed where there are levels of detail.
-        if (orl_path_is_file(levels) && !orl_path_is_file(points))
-            json_object_del(json_object_get(root, "checksums"), "points.ply");
-        *files = json_object_size(json_object_get(root, "checksums"));
-        result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
-        if (result == ORL_OK && orl_path_is_file(levels)) {
-            *files += 1;
-            *bad += orl_lod_check(log, levels) != ORL_OK;
-        }
+    const char *levels = ORL_PATH(dir, ORL_LOD_NAME);
+    ORL_TRY(orl_json_read(log, ORL_PATH(dir, "scene.json"), &root));
+    // points.ply may be removed where there are levels of detail.
+    if (orl_path_is_file(levels) && !orl_path_is_file(ORL_PATH(dir, "points.ply")))
+        json_object_del(json_object_get(root, "checksums"), "points.ply");
+    *files = json_object_size(json_object_get(root, "checksums"));
+    enum orl_result result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
+    if (result == ORL_OK && orl_path_is_file(levels)) {
+        *files += 1;
+        *bad += orl_lod_check(log, levels) != ORL_OK;
     }
     json_decref(root);
-    free(path);
-    free(points);
-    free(levels);
     return result;
 }
 
@@ -370,15 +360,11 @@ json_t *orl_manifest_ground(const struct orl_ground *ground)
 
 enum orl_result orl_manifest_check_unfinished(const struct orl_log *log, const char *dir)
 {
-    char *path = orl_path_join(log, dir, ".oriel/stages.json");
-    ORL_TRY_MEMORY(path);
-    enum orl_result result = ORL_OK;
-    json_t *root = NULL;
-    const char *missing = "scene.json";
+    const char *path = ORL_PATH(dir, ".oriel/stages.json"), *missing = "scene.json";
     if (!orl_path_is_file(path))
-        goto end;
-    if ((result = orl_json_read(log, path, &root)) != ORL_OK)
-        goto end;
+        return ORL_OK;
+    json_t *root = NULL;
+    ORL_TRY(orl_json_read(log, path, &root));
     const json_t *plan = json_object_get(root, "plan"), *done = json_object_get(root, "done");
     for (size_t i = 0; i < json_array_size(plan); i++) {
         const char *stage = json_string_value(json_array_get(plan, i));
@@ -387,11 +373,8 @@ enum orl_result orl_manifest_check_unfinished(const struct orl_log *log, const c
             break;
         }
     }
-    result = orl_fail(log, ORL_ERR_DATA,
-                      "%s: oriel prepare has not finished this scene (missing: %s); "
-                      "run it again with --resume", dir, missing);
-end:
+    enum orl_result result = orl_fail(log, ORL_ERR_DATA, "%s: oriel prepare has not finished this scene (missing: %s); "
+                                      "run it again with --resume", dir, missing);
     json_decref(root);
-    free(path);
     return result;
 }

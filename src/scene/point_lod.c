@@ -234,18 +234,12 @@ enum orl_result orl_lod_read_cloud(const struct orl_log *log, const char *dir, s
                                    struct orl_points *points)
 {
     struct orl_lod *lod = NULL;
-    char *paged = orl_path_join(log, dir, ORL_LOD_NAME);
-    char *whole = orl_path_join(log, dir, "points.ply");
-    enum orl_result result = paged && whole ? ORL_OK : ORL_ERR_MEMORY;
+    const char *paged = ORL_PATH(dir, ORL_LOD_NAME);
     memset(points, 0, sizeof *points);
-    if (result == ORL_OK && orl_path_is_file(paged)) {
-        result = orl_lod_open(log, paged, &lod);
-        ORL_THEN(result, orl_lod_sample(lod, most, points));
-        orl_lod_close(&lod);
-    } else if (result == ORL_OK) {
-        result = orl_points_read(log, whole, points);
-    }
-    free(paged);
-    free(whole);
+    if (!orl_path_is_file(paged))
+        return orl_points_read(log, ORL_PATH(dir, "points.ply"), points);
+    enum orl_result result = orl_lod_open(log, paged, &lod);
+    ORL_THEN(result, orl_lod_sample(lod, most, points));
+    orl_lod_close(&lod);
     return result;
 }

@@ -109,11 +109,8 @@ enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene 
 static size_t count_frames(const char *dir)
 {
     size_t count = 0;
-    for (bool there = true; there; count += there) {
-        char *path = orl_format(NULL, "%s/frames/%05zu", dir, count);
-        there = path && orl_path_is_dir(path);
-        free(path);
-    }
+    while (orl_path_is_dir(ORL_PATH(dir, "frames/%05zu", count)))
+        count++;
     return count;
 }
 
@@ -278,11 +275,9 @@ static enum orl_result check_files_inside(const struct orl_log *log, const struc
         return ORL_OK; // the reader reports what is missing
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *path = orl_path_join(log, dir, names.items[i]);
-        result = path ? ORL_OK : ORL_ERR_MEMORY;
-        if (path && orl_path_is_file(path))
+        const char *path = ORL_PATH(dir, "%s", names.items[i]);
+        if (orl_path_is_file(path))
             result = check_inside(log, scene, path);
-        free(path);
     }
     orl_names_finish(&names);
     return result;
@@ -291,37 +286,27 @@ static enum orl_result check_files_inside(const struct orl_log *log, const struc
 enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl_scene *scene,
                                      struct orl_colmap_model *model)
 {
-    char *sparse = orl_path_join(log, scene->dir, "sparse");
-    char *first = sparse ? orl_path_join(log, sparse, "0") : NULL;
-    const char *dir = first && orl_path_is_dir(first) ? first : sparse;
-    enum orl_result result = first ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, check_files_inside(log, scene, dir));
-    ORL_THEN(result, orl_colmap_read(log, dir, model));
-    free(first);
-    free(sparse);
-    return result;
+    const char *first = ORL_PATH(scene->dir, "sparse/0");
+    const char *dir = orl_path_is_dir(first) ? first : ORL_PATH(scene->dir, "sparse");
+    ORL_TRY(check_files_inside(log, scene, dir));
+    return orl_colmap_read(log, dir, model);
 }
 
 // Paths of the files that a folder has; NULL: missing.
 struct folder {
-    char *manifest, *points, *fused, *lod;
+    const char *manifest, *points, *fused, *lod;
 };
 
+static const char *if_there(const char *path)
+{
+    return orl_path_is_file(path) ? path : NULL;
+}
+
 static enum orl_result look(const struct orl_log *log, const char *dir, bool points,
-                            struct folder *folder)
+                            const struct folder *folder)
 {
     if (!orl_path_is_dir(dir))
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", dir);
-    const char *const names[] = {"scene.json", "points.ply", "fused.ply", ORL_LOD_NAME};
-    char **const paths[] = {&folder->manifest, &folder->points, &folder->fused, &folder->lod};
-    for (size_t i = 0; i < ORL_COUNT(names); i++) {
-        *paths[i] = orl_path_join(log, dir, names[i]);
-        ORL_TRY_MEMORY(*paths[i]);
-        if (!orl_path_is_file(*paths[i])) {
-            free(*paths[i]);
-            *paths[i] = NULL;
-        }
-    }
     if (folder->manifest)
         return !points || folder->points || folder->lod
                    ? ORL_OK
@@ -379,16 +364,14 @@ static enum orl_result create(const struct orl_log *log, const char *dir, struct
 static enum orl_result open_scene(const struct orl_log *log, const char *dir, bool points,
                                   struct orl_scene **out)
 {
-    struct folder folder = {0};
+    const struct folder folder = {
+        if_there(ORL_PATH(dir, "scene.json")), if_there(ORL_PATH(dir, "points.ply")),
+        if_there(ORL_PATH(dir, "fused.ply")), if_there(ORL_PATH(dir, ORL_LOD_NAME))};
     struct orl_colmap_model model = {0};
     enum orl_result result = create(log, dir, out);
     ORL_THEN(result, look(log, dir, points, &folder));
     ORL_THEN(result, fill(log, *out, points, &model, &folder));
     orl_colmap_finish(&model);
-    free(folder.manifest);
-    free(folder.points);
-    free(folder.fused);
-    free(folder.lod);
     if (result != ORL_OK)
         orl_scene_destroy(out);
     return result;
@@ -419,18 +402,13 @@ enum orl_result orl_scene_open_unfinished(const struct orl_log *log, const char 
                                           const struct orl_colmap_model *model,
                                           const struct orl_names *test, struct orl_scene **out)
 {
-    char *points = orl_path_join(log, dir, "points.ply");
-    char *lod = orl_path_join(log, dir, ORL_LOD_NAME);
+    const char *lod = ORL_PATH(dir, ORL_LOD_NAME);
     enum orl_result result = orl_scene_open_model(log, dir, model, out);
-    if (result == ORL_OK && !(points && lod))
-        result = ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_file(lod))
         result = orl_lod_open(log, lod, &(*out)->lod);
     for (size_t i = 0; result == ORL_OK && i < (*out)->photo_count; i++)
         (*out)->photos[i].test = test && orl_names_contain(test, (*out)->photos[i].name);
-    ORL_THEN(result, add_points(log, *out, model, points, true));
-    free(points);
-    free(lod);
+    ORL_THEN(result, add_points(log, *out, model, ORL_PATH(dir, "points.ply"), true));
     if (result != ORL_OK)
         orl_scene_destroy(out);
     return result;

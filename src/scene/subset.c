@@ -17,9 +17,7 @@ static enum orl_result copy_if_there(const struct orl_log *log, const struct orl
     enum orl_result result = ORL_OK;
     if (orl_path_is_file(path)) {
         const char *inside = path + strlen(scene->dir);
-        char *to = orl_path_join(log, dir, inside + strspn(inside, "/"));
-        result = to ? orl_file_copy(log, path, to) : ORL_ERR_MEMORY;
-        free(to);
+        result = orl_file_copy(log, path, ORL_PATH(dir, "%s", inside + strspn(inside, "/")));
     }
     free(path);
     return result;
@@ -64,15 +62,14 @@ enum orl_result orl_subset_write_model(const struct orl_log *log, const struct o
                                        const bool *keep, const char *dir)
 {
     struct orl_colmap_model all = {0};
-    char *sparse = orl_path_join(log, dir, "sparse");
-    enum orl_result result = sparse ? orl_dir_make(log, sparse) : ORL_ERR_MEMORY;
+    const char *sparse = ORL_PATH(dir, "sparse");
+    enum orl_result result = orl_dir_make(log, sparse);
     ORL_THEN(result, orl_scene_read_model(log, scene, &all));
     // Photographs and the images of the model have equal indices.
     if (result == ORL_OK && all.image_count != scene->photo_count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: its sparse model has changed", scene->dir);
     ORL_THEN(result, write_kept(log, &all, keep, sparse));
     orl_colmap_finish(&all);
-    free(sparse);
     return result;
 }
 
@@ -103,12 +100,12 @@ void orl_subset_keep_photographs(const struct orl_scene *scene, const bool *keep
 enum orl_result orl_subset_add_checksum(const struct orl_log *log, const char *dir,
                                         const char *name, json_t *sums)
 {
-    char sum[ORL_CHECKSUM_SIZE], *path = orl_path_join(log, dir, name);
-    enum orl_result result = path ? orl_file_checksum(log, path, sum) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && json_object_set_new(sums, name, json_string(sum)) != 0)
-        result = orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its checksum", path);
-    free(path);
-    return result;
+    char sum[ORL_CHECKSUM_SIZE];
+    const char *path = ORL_PATH(dir, "%s", name);
+    ORL_TRY(orl_file_checksum(log, path, sum));
+    if (json_object_set_new(sums, name, json_string(sum)) != 0)
+        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its checksum", path);
+    return ORL_OK;
 }
 
 enum orl_result orl_subset_add_checksums(const struct orl_log *log, const char *dir, json_t *sums)
@@ -123,14 +120,11 @@ enum orl_result orl_subset_add_checksums(const struct orl_log *log, const char *
 static enum orl_result read_manifest(const struct orl_log *log, const struct orl_scene *scene,
                                      json_t **manifest)
 {
-    char *path = orl_path_join(log, scene->dir, "scene.json");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && !orl_path_is_file(path))
-        result = orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
-                          scene->dir);
-    ORL_THEN(result, orl_json_read(log, path, manifest));
-    free(path);
-    return result;
+    const char *path = ORL_PATH(scene->dir, "scene.json");
+    if (!orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
+                        scene->dir);
+    return orl_json_read(log, path, manifest);
 }
 
 enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_scene *scene,

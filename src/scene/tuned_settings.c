@@ -1,7 +1,6 @@
 #include "scene/tuned_settings.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
@@ -79,25 +78,13 @@ enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, cons
     return result;
 }
 
-// Reads DIR/scene.json. *path and *root are the caller's to release.
-static enum orl_result open_manifest(const struct orl_log *log, const char *dir, char **path,
-                                     json_t **root)
-{
-    *root = NULL;
-    *path = orl_path_join(log, dir, "scene.json");
-    ORL_TRY_MEMORY(*path);
-    if (!orl_path_is_file(*path))
-        return orl_fail(log, ORL_ERR_NOT_FOUND,
-                        "%s: not there; settings can be kept in prepared scenes only", *path);
-    return orl_json_read(log, *path, root);
-}
-
 enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, const char *method,
                                 json_t *record)
 {
-    json_t *root, *all;
-    char *path;
-    enum orl_result result = open_manifest(log, dir, &path, &root);
+    json_t *root = NULL, *all;
+    const char *path = ORL_PATH(dir, "scene.json");
+    enum orl_result result = orl_path_is_file(path) ? orl_json_read(log, path, &root)
+        : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: not there; settings can be kept in prepared scenes only", path);
     if (result == ORL_OK) {
         all = json_object_get(root, "tuned");
         if (!json_is_object(all)) {
@@ -110,7 +97,6 @@ enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, cons
     }
     json_decref(record);
     json_decref(root);
-    free(path);
     return result;
 }
 
