@@ -39,8 +39,6 @@ struct site {
 // logged: the file is missing.
 json_t *orl_site_file(struct site *site, const char *path);
 enum orl_result orl_site_write(struct site *site, const char *path, const void *data, size_t size);
-// The caller releases the path with free(). NULL, logged: out of memory.
-char *orl_site_path(const struct site *site, const char *path);
 
 // --- points (cells.c) ---
 

@@ -68,13 +68,10 @@ static enum orl_result write_picture(struct live *live, const struct camera *cam
                                      const char *folder, const char *ending, const char *copied,
                                      const struct orl_image *image)
 {
-    char *path = orl_format(live->log, "%s/frames/%05d/%s/%s%s", live->dir, number, folder,
-                            live->scene->photos[camera->photo].name, ending);
-    enum orl_result result = path ? orl_file_make_folder(live->log, path) : ORL_ERR_MEMORY;
-    if (result == ORL_OK)
-        result = image ? orl_png_write(live->log, path, image) : orl_file_copy(live->log, copied, path);
-    free(path);
-    return result;
+    const char *path = ORL_PATH(live->dir, "frames/%05d/%s/%s%s", number, folder,
+                                live->scene->photos[camera->photo].name, ending);
+    ORL_TRY(orl_file_make_folder(live->log, path));
+    return image ? orl_png_write(live->log, path, image) : orl_file_copy(live->log, copied, path);
 }
 
 static enum orl_result take_picture(struct live *live, const struct camera *camera, int number,
@@ -96,10 +93,9 @@ static enum orl_result take_picture(struct live *live, const struct camera *came
 
 static void remove_time_step(struct live *live, int number)
 {
-    char *path = number >= 0 ? orl_format(live->log, "%s/frames/%05d", live->dir, number) : NULL;
-    if (path && orl_dir_remove(live->log, path) != ORL_OK)
+    const char *path = ORL_PATH(live->dir, "frames/%05d", number);
+    if (number >= 0 && orl_dir_remove(live->log, path) != ORL_OK)
         orl_logf(live->log, ORL_LOG_WARNING, "%s: stays", path);
-    free(path);
 }
 
 // Tells that the time step is there. The one before goes, unless the server draws it.

@@ -47,18 +47,13 @@ static enum orl_result write_picture(const struct orl_log *log, struct pipe *pip
                                      size_t count)
 {
     pipe->last = pipe->came_ms > pipe->last ? pipe->came_ms : pipe->last + 1;
-    char *part = orl_path_join(log, pipe->folder, ".picture");
-    char *path = orl_format(log, "%s/%012" PRId64 ".picture", pipe->folder, pipe->last);
-    enum orl_result result = part && path ? ORL_OK : ORL_ERR_MEMORY;
-    FILE *file = result == ORL_OK ? fopen(part, "wb") : NULL; // no flush: the next picture follows soon
+    const char *part = ORL_PATH(pipe->folder, ".picture");
+    const char *path = ORL_PATH(pipe->folder, "%012" PRId64 ".picture", pipe->last);
+    FILE *file = fopen(part, "wb"); // no flush: the next picture follows soon
     bool whole = file && fwrite(bytes, 1, count, file) == count;
     if (file && fclose(file) != 0)
         whole = false;
-    if (result == ORL_OK && (!whole || rename(part, path) != 0))
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-    free(part);
-    free(path);
-    return result;
+    return whole && rename(part, path) == 0 ? ORL_OK : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
 }
 
 // Writes the pictures that are whole.

@@ -264,22 +264,16 @@ static enum orl_result list_files(const struct orl_log *log, const char *dir, co
                                   bool data, struct orl_names *paths)
 {
     struct orl_names names = {0};
-    char *here = orl_path_join(log, dir, folder);
-    enum orl_result result = here ? orl_dir_list(log, here, &names) : ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
+    ORL_TRY(orl_dir_list(log, ORL_PATH(dir, "%s", folder), &names));
     for (size_t i = 0; i < names.count && result == ORL_OK; i++) {
-        char *path = orl_format(log, "%s%s%s", folder, *folder ? "/" : "", names.items[i]);
-        char *full = path ? orl_path_join(log, dir, path) : NULL;
-        if (!full)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(full))
+        const char *path = ORL_PATH(folder, "%s", names.items[i]);
+        if (orl_path_is_dir(ORL_PATH(dir, "%s", path)))
             result = list_files(log, dir, path, data, paths);
         else if (!data || is_data(path))
             result = orl_names_add(log, paths, path);
-        free(full);
-        free(path);
     }
     orl_names_finish(&names);
-    free(here);
     return result;
 }
 
@@ -293,10 +287,8 @@ static void add_file(const struct site *site, const char *path, struct text *tex
 {
     uint8_t *data = NULL;
     size_t size = 0;
-    char *file = orl_site_path(site, path);
     if (text->result == ORL_OK)
-        text->result = file ? orl_file_read(site->log, file, FILE_MAX, &data, &size)
-                            : ORL_ERR_MEMORY;
+        text->result = orl_file_read(site->log, ORL_PATH(site->dir, "%s", path), FILE_MAX, &data, &size);
     if (data) {
         add(text, text->bytes.size ? ",\n\"" : "\"");
         add(text, path);
@@ -304,7 +296,6 @@ static void add_file(const struct site *site, const char *path, struct text *tex
         add_base64(text, data, size);
         add(text, "\"");
     }
-    free(file);
     free(data);
 }
 

@@ -8,32 +8,21 @@
 
 #include "core/file.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "core/new_dir.h"
 #include "scene/info.h"
 #include "walk/internal.h"
 
-char *orl_site_path(const struct site *site, const char *path)
-{
-    return orl_path_join(site->log, site->dir, path);
-}
-
 enum orl_result orl_site_write(struct site *site, const char *path, const void *data, size_t size)
 {
-    char *file = orl_site_path(site, path);
-    enum orl_result result = file ? orl_file_write(site->log, file, data, size) : ORL_ERR_MEMORY;
-    free(file);
-    return result;
+    return orl_file_write(site->log, ORL_PATH(site->dir, "%s", path), data, size);
 }
 
 // False: the file is missing, and has no bytes.
 static bool find_bytes(const struct site *site, const char *path, size_t *bytes)
 {
     struct stat status;
-    char *file = orl_site_path(site, path);
-    bool there = file && stat(file, &status) == 0;
+    bool there = stat(ORL_PATH(site->dir, "%s", path), &status) == 0;
     *bytes = there ? (size_t)status.st_size : 0;
-    free(file);
     return there;
 }
 
@@ -61,15 +50,13 @@ static enum orl_result check_out(const struct orl_log *log, const char *out, boo
                         "--single-file writes an HTML file", out);
     if (!orl_path_is_dir(out))
         return ORL_OK;
-    char *path = orl_path_join(log, out, "manifest.json");
+    const char *path = ORL_PATH(out, "manifest.json");
     json_t *manifest = NULL;
     const struct orl_log quiet = {.level = ORL_LOG_ERROR};
-    bool ours = path && orl_path_is_file(path) &&
-                orl_json_read(&quiet, path, &manifest) == ORL_OK;
+    bool ours = orl_path_is_file(path) && orl_json_read(&quiet, path, &manifest) == ORL_OK;
     const char *format = json_string_value(json_object_get(manifest, "format"));
     ours = ours && format && strcmp(format, "oriel site") == 0;
     json_decref(manifest);
-    free(path);
     return ours ? ORL_OK : orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: is a folder that is no site "
                                     "of Oriel, and stays as it is", out);
 }
@@ -77,13 +64,9 @@ static enum orl_result check_out(const struct orl_log *log, const char *out, boo
 static enum orl_result make_folders(struct site *site)
 {
     static const char *const folders[] = {"js", "points", "photos", "depth", "thumbs"};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(folders); i++) {
-        char *path = orl_site_path(site, folders[i]);
-        result = path ? orl_dir_make(site->log, path) : ORL_ERR_MEMORY;
-        free(path);
-    }
-    return result;
+    for (size_t i = 0; i < ORL_COUNT(folders); i++)
+        ORL_TRY(orl_dir_make(site->log, ORL_PATH(site->dir, "%s", folders[i])));
+    return ORL_OK;
 }
 
 // --- the parts of the site ---

@@ -7,7 +7,6 @@
 
 #include "core/file.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "oriel/path.h"
 #include "render/output/sequence.h"
 #include "walk/internal.h"
@@ -32,7 +31,7 @@ struct run {
     const struct walk_rendering *rendering;
     struct orl_path path;
     size_t done;
-    char *stem, *keys, *file; // owned: SCENE/renders/NNN, its keyframes, what is written
+    char keys[ORL_PATH_SIZE], file[ORL_PATH_SIZE]; // in SCENE/renders: the keyframes, what is written
 };
 
 static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_frame *frame)
@@ -47,26 +46,15 @@ static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_
 static enum orl_result name_files(struct run *run, const char *format)
 {
     const struct orl_log *log = run->rendering->log;
-    char *folder = orl_path_join(log, run->rendering->scene->dir, "renders");
-    enum orl_result result = folder ? orl_dir_make(log, folder) : ORL_ERR_MEMORY;
-    bool is_free = false;
-    for (int number = 1; result == ORL_OK && !is_free && number <= NUMBER_MAX; number++) {
-        free(run->stem);
-        free(run->keys);
-        run->stem = orl_format(log, "%s/%03d", folder, number);
-        run->keys = run->stem ? orl_format(log, "%s.path.json", run->stem) : NULL;
-        is_free = run->keys && access(run->keys, F_OK) != 0;
-        result = run->keys ? ORL_OK : ORL_ERR_MEMORY;
+    const char *folder = ORL_PATH(run->rendering->scene->dir, "renders");
+    ORL_TRY(orl_dir_make(log, folder));
+    for (int number = 1; number <= NUMBER_MAX; number++) {
+        orl_path_print(run->keys, folder, "%03d.path.json", number);
+        orl_path_print(run->file, folder, "%03d%s", number, strcmp(format, "mp4") == 0 ? ".mp4" : "");
+        if (access(run->keys, F_OK) != 0)
+            return ORL_OK;
     }
-    if (result == ORL_OK && !is_free)
-        result = orl_fail(log, ORL_ERR_IO, "%s: has no free number", folder);
-    if (result == ORL_OK) {
-        run->file = strcmp(format, "mp4") == 0 ? orl_format(log, "%s.mp4", run->stem)
-                                               : orl_strdup(log, run->stem);
-        result = run->file ? ORL_OK : ORL_ERR_MEMORY;
-    }
-    free(folder);
-    return result;
+    return orl_fail(log, ORL_ERR_IO, "%s: has no free number", folder);
 }
 
 static enum orl_result read_path(struct run *run, const json_t *keyframes)
@@ -111,8 +99,5 @@ enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering, c
     if (result == ORL_OK)
         rendering->report(rendering->priv, run.path.count, run.path.count, run.file);
     orl_path_finish(&run.path);
-    free(run.stem);
-    free(run.keys);
-    free(run.file);
     return result;
 }

@@ -1,7 +1,6 @@
 #include "walk/settings.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
@@ -171,31 +170,24 @@ enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *w
 enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct orl_scene *scene,
                                        json_t **settings)
 {
-    char *path = orl_path_join(log, scene->dir, file_name);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    *settings = NULL;
-    if (path && !orl_path_is_file(path)) {
+    const char *path = ORL_PATH(scene->dir, "%s", file_name);
+    if (!orl_path_is_file(path)) {
         *settings = json_object();
-        result = *settings ? ORL_OK : ORL_ERR_MEMORY;
-    } else if (path) {
-        result = orl_json_read(log, path, settings);
-        ORL_THEN(result, orl_walk_settings_check(log, path, *settings));
+        return *settings ? ORL_OK : ORL_ERR_MEMORY;
     }
+    enum orl_result result = orl_json_read(log, path, settings);
+    ORL_THEN(result, orl_walk_settings_check(log, path, *settings));
     if (result != ORL_OK) {
         json_decref(*settings);
         *settings = NULL;
     }
-    free(path);
     return result;
 }
 
 enum orl_result orl_walk_settings_write(const struct orl_log *log, const struct orl_scene *scene,
                                         const json_t *settings)
 {
-    char *path = orl_path_join(log, scene->dir, file_name);
-    enum orl_result result = path ? orl_json_write(log, path, settings) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_json_write(log, ORL_PATH(scene->dir, "%s", file_name), settings);
 }
 
 bool orl_walk_settings_start(const json_t *settings, const struct orl_camera *camera,

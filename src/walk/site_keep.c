@@ -18,18 +18,15 @@ static const char list_name[] = "files.json";
 enum orl_result orl_site_list(const struct site *site)
 {
     struct orl_names paths = {0};
-    char *file = orl_site_path(site, list_name);
-    enum orl_result result = file ? orl_site_files(site->log, site->dir, false, &paths) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_site_files(site->log, site->dir, false, &paths);
     json_t *list = json_array();
     for (size_t i = 0; i < paths.count; i++)
         json_array_append_new(list, orl_json_string(paths.items[i]));
     json_array_append_new(list, orl_json_string(list_name));
     json_t *root = json_pack("{s:o}", "files", list);
-    if (result == ORL_OK)
-        result = orl_json_write(site->log, file, root);
+    ORL_THEN(result, orl_json_write(site->log, ORL_PATH(site->dir, "%s", list_name), root));
     json_decref(root);
     orl_names_finish(&paths);
-    free(file);
     return result;
 }
 
@@ -50,17 +47,14 @@ static enum orl_result read_list(struct keeping *k)
 {
     json_t *root = NULL, *item;
     size_t i;
-    char *file = orl_path_join(k->log, k->old, list_name);
-    enum orl_result result = file ? ORL_OK : ORL_ERR_MEMORY;
-    k->knows = file && orl_path_is_file(file);
-    if (k->knows)
-        result = orl_json_read(k->log, file, &root);
+    const char *file = ORL_PATH(k->old, "%s", list_name);
+    k->knows = orl_path_is_file(file);
+    enum orl_result result = k->knows ? orl_json_read(k->log, file, &root) : ORL_OK;
     json_array_foreach(json_object_get(root, "files"), i, item)
         if (result == ORL_OK && json_is_string(item))
             result = orl_names_add(k->log, &k->listed, json_string_value(item));
     orl_names_sort(&k->listed);
     json_decref(root);
-    free(file);
     return result;
 }
 
@@ -112,24 +106,19 @@ static enum orl_result keep_folder(const struct keeping *k, const char *path, co
 static enum orl_result keep(const struct keeping *k, const char *path)
 {
     struct stat st, there;
-    char *from = orl_path_join(k->log, k->old, path), *to = orl_path_join(k->log, k->new, path);
-    enum orl_result result = from && to ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && lstat(from, &st) != 0)
-        result = orl_fail(k->log, ORL_ERR_IO, "%s: %s", from, strerror(errno));
-    if (result != ORL_OK || is_listed(k, path))
-        goto end;
+    const char *from = ORL_PATH(k->old, "%s", path), *to = ORL_PATH(k->new, "%s", path);
+    if (lstat(from, &st) != 0)
+        return orl_fail(k->log, ORL_ERR_IO, "%s: %s", from, strerror(errno));
+    if (is_listed(k, path))
+        return ORL_OK;
     bool taken = lstat(to, &there) == 0;
     if (S_ISDIR(st.st_mode) && (!taken || S_ISDIR(there.st_mode)))
-        result = keep_folder(k, path, from, to, &st);
-    else if (taken && k->knows)
-        result = orl_fail(k->log, ORL_ERR_ARGUMENT, "%s: was not written by Oriel, and the new site "
-                          "has something of this name: move it elsewhere", from);
-    else if (!taken && (result = orl_file_make_folder(k->log, to)) == ORL_OK)
-        result = keep_file(k, from, to, &st);
-end:
-    free(from);
-    free(to);
-    return result;
+        return keep_folder(k, path, from, to, &st);
+    if (taken)
+        return k->knows ? orl_fail(k->log, ORL_ERR_ARGUMENT, "%s: was not written by Oriel, and the new site "
+                                   "has something of this name: move it elsewhere", from) : ORL_OK;
+    ORL_TRY(orl_file_make_folder(k->log, to));
+    return keep_file(k, from, to, &st);
 }
 
 enum orl_result orl_site_keep(const struct site *site, const char *old)

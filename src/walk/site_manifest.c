@@ -126,12 +126,10 @@ enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *pho
     if (site->params->radiance)
         json_object_set_new(root, "radiance", json_pack("{s:f, s:f}", "peak", site->range.peak,
                                                         "mu", site->range.mu));
-    char *path = orl_site_path(site, "manifest.json");
-    enum orl_result result = path ? orl_json_write(site->log, path, root) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_json_write(site->log, ORL_PATH(site->dir, "manifest.json"), root);
     json_t *file = result == ORL_OK ? orl_site_file(site, "manifest.json") : NULL;
     site->report->first_bytes += (size_t)json_integer_value(json_object_get(file, "bytes"));
     json_decref(file);
     json_decref(root);
-    free(path);
     return result;
 }

@@ -1,10 +1,8 @@
 // A site's photographs: JPEGs, thumbnails, and a depth map of each.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bridge/bridge.h"
-#include "core/memory.h"
 #include "io/picture.h"
 #include "oriel/path.h"
 #include "render/photos/occluders.h"
@@ -46,11 +44,7 @@ static enum orl_result write_smaller(struct site *site, const struct orl_image *
     bool same = image->width == width && image->height == height;
     enum orl_result result = same ? ORL_OK
                                   : orl_bridge_resize(site->log, image, width, height, &small);
-    char *file = result == ORL_OK ? orl_site_path(site, path) : NULL;
-    if (result == ORL_OK)
-        result = file ? orl_jpeg_write(site->log, file, same ? image : &small, quality, NULL)
-                      : ORL_ERR_MEMORY;
-    free(file);
+    ORL_THEN(result, orl_jpeg_write(site->log, ORL_PATH(site->dir, "%s", path), same ? image : &small, quality, NULL));
     orl_image_finish(&small);
     return result;
 }
@@ -206,10 +200,7 @@ static enum orl_result write_depth(struct site *site, size_t photo, const struct
     *nearest = result == ORL_OK ? nearest_depth(&depth) : 1;
     ORL_THEN(result, put_occluders(site, photo, *nearest, &depth));
     ORL_THEN(result, pack_depth(site->log, &depth, *nearest, &packed));
-    char *file = result == ORL_OK ? orl_site_path(site, path) : NULL;
-    if (result == ORL_OK)
-        result = file ? orl_png_write(site->log, file, &packed) : ORL_ERR_MEMORY;
-    free(file);
+    ORL_THEN(result, orl_png_write(site->log, ORL_PATH(site->dir, "%s", path), &packed));
     orl_image_finish(&depth);
     orl_image_finish(&packed);
     return result;

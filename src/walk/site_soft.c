@@ -82,13 +82,11 @@ enum orl_result orl_site_soft(struct site *site, json_t **soft)
     struct orl_soft_model model = {0};
     if (!(site->render.soft > 0) || site->params->radiance || site->carves)
         return ORL_OK;
-    char *folder = orl_site_path(site, "soft");
-    enum orl_result result = folder ? orl_dir_make(site->log, folder) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_dir_make(site->log, ORL_PATH(site->dir, "soft"));
     ORL_THEN(result, orl_soft_read_scene(site->log, site->scene->dir, &model));
     ORL_THEN(result, orl_soft_raster_init(site->gpu, &model, &site->soft));
     ORL_THEN(result, write_splats(site, &model, soft));
     orl_soft_finish(&model);
-    free(folder);
     return result;
 }
 
@@ -99,17 +97,16 @@ enum orl_result orl_site_soft_photo(struct site *site, const struct orl_view *vi
                                           .tag = "soft splats in a photograph"};
     struct orl_image shown = {0};
     struct orl_tex *slot = NULL;
-    char *file = orl_site_path(site, path);
-    enum orl_result result = file ? orl_tex_create(site->gpu, &params, &slot) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_tex_create(site->gpu, &params, &slot);
     ORL_THEN(result, orl_image_init(site->log, &shown, params.width, params.height, 1, ORL_PIXEL_U8));
     ORL_THEN(result, orl_soft_layer_keep(site->gpu, &site->soft, view, slot, 0));
     if (result == ORL_OK) {
         orl_tex_read(slot, 0, GL_RED, GL_UNSIGNED_BYTE, orl_image_bytes(&shown), shown.u8);
         result = orl_gpu_finish(site->gpu);
     }
-    ORL_THEN(result, orl_jpeg_write(site->log, file, &shown, site->params->jpeg_quality, NULL));
+    ORL_THEN(result, orl_jpeg_write(site->log, ORL_PATH(site->dir, "%s", path), &shown, site->params->jpeg_quality,
+                                    NULL));
     orl_tex_destroy(site->gpu, &slot);
     orl_image_finish(&shown);
-    free(file);
     return result;
 }

@@ -250,11 +250,8 @@ static enum orl_result write_step(struct site *site, bool *said_endless, json_t 
     ORL_THEN(result, hull_points(site->log, &step, said_endless, &hull));
     finish_step(&step);
     bool first = json_array_size(steps) == 0; // whose photographs are the site's
-    for (size_t i = 0; result == ORL_OK && i < (first ? 1 : ORL_COUNT(parts)); i++) {
-        char *inner = orl_format(site->log, "%s/%s%s", site->dir, site->folder, parts[i]);
-        result = inner ? orl_dir_make(site->log, inner) : ORL_ERR_MEMORY;
-        free(inner);
-    }
+    for (size_t i = 0; result == ORL_OK && i < (first ? 1 : ORL_COUNT(parts)); i++)
+        result = orl_dir_make(site->log, ORL_PATH(site->dir, "%s%s", site->folder, parts[i]));
     ORL_THEN(result, orl_site_points(site, &hull, HULL_POINTS, &points));
     if (result == ORL_OK && !first)
         result = orl_site_photos(site, &photos);

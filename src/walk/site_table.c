@@ -13,18 +13,16 @@ static const size_t FILE_MAX = (size_t)1 << 30;
 static enum orl_result add(const struct orl_log *log, const char *dir, const char *path,
                            struct site_table *table)
 {
-    char *full = orl_path_join(log, dir, path);
     struct site_file file = {.path = orl_strdup(log, path)};
     enum orl_result result = orl_grow(log, (void **)&table->files, &table->capacity,
                                       table->count + 1, sizeof *table->files);
     if (result == ORL_OK)
-        result = full && file.path ? orl_file_read(log, full, FILE_MAX, &file.data, &file.size)
-                                   : ORL_ERR_MEMORY;
+        result = file.path ? orl_file_read(log, ORL_PATH(dir, "%s", path), FILE_MAX, &file.data, &file.size)
+                           : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         table->files[table->count++] = file;
     else
         free(file.path);
-    free(full);
     return result;
 }
 
@@ -44,23 +42,20 @@ enum orl_result orl_site_table_make(struct orl_gpu *gpu, struct orl_scene *scene
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_publish_report report;
-    char *dir = NULL, *site = NULL;
+    char *dir = NULL;
     *table = (struct site_table){0};
-    enum orl_result result = orl_dir_make_temporary(log, "walk", &dir);
-    if (result != ORL_OK)
-        return result;
-    site = orl_path_join(log, dir, "site");
+    ORL_TRY(orl_dir_make_temporary(log, "walk", &dir));
+    const char *site = ORL_PATH(dir, "site");
     struct orl_publish_params params = {ORL_PUBLISH_DEFAULTS};
     params.out = site;
     params.radiance = radiance;
     params.progress = progress;
-    result = site ? orl_publish(gpu, scene, &params, &report) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_publish(gpu, scene, &params, &report);
     ORL_THEN(result, read_site(log, site, table));
     if (orl_dir_remove(log, dir) != ORL_OK && result == ORL_OK)
         result = ORL_ERR_IO;
     if (result != ORL_OK)
         orl_site_table_finish(table);
-    free(site);
     free(dir);
     return result;
 }

@@ -40,9 +40,7 @@ static void start(struct setup *s, size_t side)
         p->radius[i] = p->position[i][0] > 0.5f ? 0.04f : 0.01f;
         p->color[i][0] = (uint8_t)(255 * p->position[i][0]);
     }
-    char *folder = orl_site_path(&s->site, "points");
-    assert_int_equal(orl_dir_make(&s->log, folder), ORL_OK);
-    free(folder);
+    assert_int_equal(orl_dir_make(&s->log, ORL_PATH(s->site.dir, "points")), ORL_OK);
 }
 
 static void finish(struct setup *s)
@@ -55,9 +53,7 @@ static void finish(struct setup *s)
 static uint8_t *read_file(struct setup *s, const char *name, size_t *size)
 {
     uint8_t *data = NULL;
-    char *path = orl_site_path(&s->site, name);
-    assert_int_equal(orl_file_read(&s->log, path, 1 << 30, &data, size), ORL_OK);
-    free(path);
+    assert_int_equal(orl_file_read(&s->log, ORL_PATH(s->site.dir, "%s", name), 1 << 30, &data, size), ORL_OK);
     return data;
 }
 
