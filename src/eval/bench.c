@@ -105,23 +105,19 @@ static enum orl_result compare_resolution(struct bench_job *job, struct orl_rend
     struct orl_image picture = {0};
     struct orl_metrics metrics = {0};
     struct orl_view view = orl_bench_view(job, 0, run->size);
-    char *path = NULL;
     enum orl_result result =
         orl_renderer_draw(renderer, &view, &job->params->choices[0].params, NULL, &frame);
     ORL_THEN(result, orl_tone_srgb(job->log, &frame.color, &picture));
     if (result == ORL_OK && job->best.u8)
         result = orl_metrics_compare(job->log, &picture, &job->best, &frame.coverage, &metrics);
     run->psnr_db = metrics.psnr_db;
-    if (result == ORL_OK && job->params->image_dir) {
-        path = orl_format(job->log, "%s/photographs_1of%d.png", job->params->image_dir,
-                          run->photo_divide);
-        result = path ? orl_png_write(job->log, path, &picture) : ORL_ERR_MEMORY;
-    }
+    if (result == ORL_OK && job->params->image_dir)
+        result = orl_png_write(job->log, ORL_PATH(job->params->image_dir, "photographs_1of%d.png", run->photo_divide),
+                               &picture);
     if (result == ORL_OK && !job->best.u8) {
         job->best = picture;
         memset(&picture, 0, sizeof picture);
     }
-    free(path);
     orl_image_finish(&picture);
     orl_frame_finish(&frame);
     return result;

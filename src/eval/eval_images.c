@@ -5,17 +5,16 @@
 
 #include "bridge/bridge.h"
 #include "core/file.h"
-#include "core/memory.h"
 #include "eval/internal.h"
 #include "io/picture.h"
 
 enum { AMPLIFY = 4 };
 
-char *orl_eval_file_stem(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+// The photograph's name as a file name, without folders, and without its extension unless another
+// photograph differs by that alone.
+static void print_stem(const struct orl_scene *scene, size_t photo, char stem[ORL_PATH_SIZE])
 {
-    char *stem = orl_strdup(log, scene->photos[photo].name);
-    if (!stem)
-        return NULL;
+    orl_path_print(stem, "", "%s", scene->photos[photo].name);
     char *dot = strrchr(stem, '.');
     if (dot && dot != stem && !strchr(dot, '/')) {
         size_t alike = 0;
@@ -27,7 +26,6 @@ char *orl_eval_file_stem(const struct orl_log *log, const struct orl_scene *scen
     }
     for (char *slash = stem; (slash = strchr(slash, '/'));)
         *slash = '_';
-    return stem;
 }
 
 // Photograph, rendering and their difference times AMPLIFY, from left to right.
@@ -56,10 +54,7 @@ static enum orl_result write_as(const struct orl_log *log, const char *dir, cons
                                 const char *middle, const char *end,
                                 const struct orl_image *image)
 {
-    char *path = orl_format(log, "%s/%s.%s%s.png", dir, stem, middle, end);
-    enum orl_result result = path ? orl_png_write(log, path, image) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_png_write(log, ORL_PATH(dir, "%s.%s%s.png", stem, middle, end), image);
 }
 
 enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,
@@ -68,32 +63,27 @@ enum orl_result orl_eval_write_images(const struct orl_log *log, const struct or
                                       const struct orl_image *photograph)
 {
     struct orl_image panels = {0};
-    char *stem = orl_eval_file_stem(log, scene, photo);
-    enum orl_result result = stem ? beside(log, rendered, photograph, &panels) : ORL_ERR_MEMORY;
+    char stem[ORL_PATH_SIZE];
+    print_stem(scene, photo, stem);
+    enum orl_result result = beside(log, rendered, photograph, &panels);
     ORL_THEN(result, write_as(log, params->image_dir, stem, "photo", "", photograph));
     ORL_THEN(result, write_as(log, params->image_dir, stem, params->method, "", rendered));
     ORL_THEN(result, write_as(log, params->image_dir, stem, params->method, ".diff", &panels));
     orl_image_finish(&panels);
-    free(stem);
     return result;
 }
 
 // --- pictures of other programs ---
 
-// NULL: there is none.
-static char *find_picture(const struct orl_log *log, const struct orl_scene *scene,
-                          const char *dir, size_t photo)
+// False: there is none.
+static bool find_picture(const struct orl_scene *scene, const char *dir, size_t photo, char path[ORL_PATH_SIZE])
 {
     static const char *const extensions[] = {"png", "jpg", "jpeg", "JPG"};
-    char *stem = orl_eval_file_stem(log, scene, photo), *found = NULL;
-    for (size_t i = 0; stem && !found && i < ORL_COUNT(extensions); i++) {
-        char *path = orl_format(log, "%s/%s.%s", dir, stem, extensions[i]);
-        if (path && orl_path_is_file(path))
-            found = path;
-        else
-            free(path);
-    }
-    free(stem);
+    char stem[ORL_PATH_SIZE];
+    bool found = false;
+    print_stem(scene, photo, stem);
+    for (size_t i = 0; !found && i < ORL_COUNT(extensions); i++)
+        found = orl_path_is_file(orl_path_print(path, dir, "%s.%s", stem, extensions[i]));
     return found;
 }
 
@@ -103,8 +93,8 @@ enum orl_result orl_eval_read_picture(const struct orl_log *log, const struct or
 {
     int width = heldout->picture.width, height = heldout->picture.height, n = heldout->divide;
     struct orl_image other = {0};
-    char *path = find_picture(log, scene, dir, heldout->photo);
-    if (!path)
+    char path[ORL_PATH_SIZE];
+    if (!find_picture(scene, dir, heldout->photo, path))
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no picture of %s", dir,
                         scene->photos[heldout->photo].name);
     enum orl_result result = orl_picture_read(log, path, 3, &other);
@@ -121,6 +111,5 @@ enum orl_result orl_eval_read_picture(const struct orl_log *log, const struct or
     for (int i = 0; result == ORL_OK && i < width * height; i++)
         coverage->f32[i] = 1;
     orl_image_finish(&other);
-    free(path);
     return result;
 }

@@ -12,9 +12,6 @@
 char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bool array,
                           int digits);
 
-// The photograph's name as a file name, without folders, and without its extension unless another
-// photograph differs by that alone. The caller releases it with free().
-char *orl_eval_file_stem(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
 // Writes one view's pictures into the existing folder params->image_dir.
 enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,
                                       const struct orl_eval_params *params, size_t photo,

@@ -50,7 +50,7 @@ struct refine {
     double steps;                  // for each photograph
     struct orl_soft_model model;   // owned
     struct orl_refine_state state;
-    char *state_path;              // owned
+    const char *state_path;
     double keep_s;                 // how long it took to keep the state
 };
 
@@ -240,17 +240,14 @@ static enum orl_result find_shares(struct refine *r, struct orl_gpu *gpu, struct
 static enum orl_result keep_shares(const struct refine *r, struct orl_refine_report *report)
 {
     struct orl_choice choice = r->params->choice;
-    char *path = orl_format(r->log, "%s/scene.json", r->scene->dir);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    report->kept = path && orl_path_is_file(path);
+    report->kept = orl_path_is_file(ORL_PATH(r->scene->dir, "scene.json"));
     choice.params.soft = (float)report->share;
     choice.params.soft_mix = (float)report->mix_share;
-    if (report->kept)
-        result = orl_tuned_write(r->log, r->scene->dir, choice.method->name,
-                                 orl_choice_record(&choice, report->before_psnr_db, report->psnr_db, report->checks,
-                                                   r->params->size_divide, true));
-    free(path);
-    return result;
+    if (!report->kept)
+        return ORL_OK;
+    return orl_tuned_write(r->log, r->scene->dir, choice.method->name,
+                           orl_choice_record(&choice, report->before_psnr_db, report->psnr_db, report->checks,
+                                             r->params->size_divide, true));
 }
 
 // --- the whole ---
@@ -379,18 +376,13 @@ static enum orl_result descend(struct refine *r, struct orl_gpu *gpu, size_t pho
     r->state.report.steps += at->steps;
     r->state.report.loss = at->loss;
     *at = (struct orl_soft_descent_report){0};
-    char *path = orl_path_join(r->log, r->scene->dir, ORL_SOFT_NAME);
-    enum orl_result result = path ? orl_soft_write(r->log, path, &r->model) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_soft_write(r->log, ORL_PATH(r->scene->dir, ORL_SOFT_NAME), &r->model);
 }
 
 static enum orl_result run(struct refine *r, struct orl_gpu *gpu)
 {
     size_t train;
     ORL_TRY(orl_dir_sweep(r->log, r->scene->dir)); // a state that was being written
-    r->state_path = orl_path_join(r->log, r->scene->dir, ORL_REFINE_STATE_NAME);
-    ORL_TRY_MEMORY(r->state_path);
     ORL_TRY(orl_validation_check(r->log, r->scene, &train));
     r->checks = (size_t)fmin(fmin(fmax((double)(train / CHECKED), CHECKS_MIN), (double)(train / 2)), CHECKS_MAX);
     const double photographs = (double)train;
@@ -416,7 +408,8 @@ static enum orl_result run(struct refine *r, struct orl_gpu *gpu)
 enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, const struct orl_refine_params *params,
                            struct orl_refine_report *report)
 {
-    struct refine r = {.log = orl_gpu_log(gpu), .scene = scene, .params = params};
+    struct refine r = {.log = orl_gpu_log(gpu), .scene = scene, .params = params,
+                       .state_path = ORL_PATH(scene->dir, ORL_REFINE_STATE_NAME)};
     enum orl_result result = run(&r, gpu);
     *report = r.state.report;
     for (size_t i = 0; i < r.count; i++) {
@@ -424,7 +417,6 @@ enum orl_result orl_refine(struct orl_gpu *gpu, const struct orl_scene *scene, c
         orl_image_finish(&r.photos[i].use);
     }
     free(r.photos);
-    free(r.state_path);
     orl_soft_finish(&r.model);
     return result;
 }

@@ -280,18 +280,6 @@ void orl_stability_frame_finish(struct orl_stability_frame *frame)
     orl_image_finish(&frame->coverage);
 }
 
-static enum orl_result write_frame(const struct orl_log *log,
-                                   const struct orl_stability_params *params, size_t index,
-                                   const struct orl_image *srgb)
-{
-    if (!params->image_dir)
-        return ORL_OK;
-    char *path = orl_format(log, "%s/%s.%05zu.png", params->image_dir, params->method, index);
-    enum orl_result result = path ? orl_png_write(log, path, srgb) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
-}
-
 static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
                             const struct orl_stability_params *params, size_t index,
                             struct orl_stability_frame *out, double *ms)
@@ -305,7 +293,8 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
     enum orl_result result = orl_renderer_draw(renderer, &out->view, params->render, skip, &frame);
     *ms += 1e3 * (orl_time_s() - start);
     ORL_THEN(result, orl_tone_srgb(log, &frame.color, &out->srgb));
-    ORL_THEN(result, write_frame(log, params, index, &out->srgb));
+    if (result == ORL_OK && params->image_dir)
+        result = orl_png_write(log, ORL_PATH(params->image_dir, "%s.%05zu.png", params->method, index), &out->srgb);
     if (result == ORL_OK) {
         out->depth = frame.depth;
         out->coverage = frame.coverage;

@@ -36,11 +36,8 @@ size_t orl_trim_scene_file_bytes(const struct orl_log *log, const struct orl_sce
     static const char *const names[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
                                         "sparse/points3D.bin", "mesh.ply"};
     size_t bytes = 0;
-    for (size_t i = 0; i < ORL_COUNT(names); i++) {
-        char *path = orl_path_join(log, scene->dir, names[i]);
-        bytes += file_size(path);
-        free(path);
-    }
+    for (size_t i = 0; i < ORL_COUNT(names); i++)
+        bytes += file_size(ORL_PATH(scene->dir, "%s", names[i]));
     for (size_t i = 0; i < scene->photo_count; i++) {
         char *photo = orl_scene_photo_path(log, scene, i);
         char *mask = orl_scene_mask_path(log, scene, i);
@@ -74,59 +71,34 @@ static bool is_left_out(const struct writer *w, const char *path)
 
 static enum orl_result copy(const struct writer *w, const char *from, const char *name)
 {
-    char *to = orl_path_join(w->log, w->out, name);
-    enum orl_result result = to ? orl_file_copy(w->log, from, to) : ORL_ERR_MEMORY;
-    free(to);
-    return result == ORL_OK ? orl_subset_add_checksum(w->log, w->out, name, w->sums) : result;
+    ORL_TRY(orl_file_copy(w->log, from, ORL_PATH(w->out, "%s", name)));
+    return orl_subset_add_checksum(w->log, w->out, name, w->sums);
 }
 
 // Copies SCENE/name, a file or a folder, without what belongs to photographs that are left out.
 static enum orl_result copy_tree(const struct writer *w, const char *name)
 {
-    struct orl_names names = {0};
-    char *from = orl_path_join(w->log, w->source->scene->dir, name);
-    char *to = orl_path_join(w->log, w->out, name);
-    enum orl_result result = from && to ? ORL_OK : ORL_ERR_MEMORY;
-    bool folder = result == ORL_OK && orl_path_is_dir(from);
-    if (result == ORL_OK && !folder && orl_path_is_file(from))
-        result = copy(w, from, name);
-    if (folder)
-        result = orl_dir_make(w->log, to);
-    if (folder && result == ORL_OK)
-        result = orl_dir_list(w->log, from, &names);
+    struct orl_names names;
+    const char *from = ORL_PATH(w->source->scene->dir, "%s", name);
+    if (!orl_path_is_dir(from))
+        return orl_path_is_file(from) ? copy(w, from, name) : ORL_OK;
+    ORL_TRY(orl_dir_make(w->log, ORL_PATH(w->out, "%s", name)));
+    enum orl_result result = orl_dir_list(w->log, from, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *inner = orl_path_join(w->log, name, names.items[i]);
-        result = inner ? ORL_OK : ORL_ERR_MEMORY;
-        if (inner && !is_left_out(w, inner))
+        const char *inner = ORL_PATH(name, "%s", names.items[i]);
+        if (!is_left_out(w, inner))
             result = copy_tree(w, inner);
-        free(inner);
     }
     orl_names_finish(&names);
-    free(from);
-    free(to);
     return result;
 }
 
 static enum orl_result write_photos(const struct writer *w)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < w->source->scene->photo_count; i++) {
-        char *name = orl_path_join(w->log, "images", w->source->scene->photos[i].name);
-        result = name ? ORL_OK : ORL_ERR_MEMORY;
-        if (name && w->keep[i])
-            result = copy_tree(w, name);
-        free(name);
-    }
-    return result;
-}
-
-static enum orl_result write_points(const struct writer *w)
-{
-    char *path = orl_path_join(w->log, w->out, "points.ply");
-    enum orl_result result =
-        path ? orl_points_write(w->log, path, &w->model->scene.points, true) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    for (size_t i = 0; i < w->source->scene->photo_count; i++)
+        if (w->keep[i])
+            ORL_TRY(copy_tree(w, ORL_PATH("images", "%s", w->source->scene->photos[i].name)));
+    return ORL_OK;
 }
 
 // --- scene.json ---
@@ -135,23 +107,17 @@ static enum orl_result write_points(const struct writer *w)
 static enum orl_result read_manifest(const struct writer *w, json_t **root)
 {
     const struct orl_scene *scene = w->source->scene;
-    char *path = orl_path_join(w->log, scene->dir, "scene.json");
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    *root = NULL;
-    if (path && orl_path_is_file(path)) {
-        result = orl_json_read(w->log, path, root);
-    } else if (path) {
-        json_t *photos = json_array();
-        for (size_t i = 0; i < scene->photo_count; i++)
-            json_array_append_new(photos, json_pack("{s:s, s:s}", "name", scene->photos[i].name,
-                                                    "split", "train"));
-        *root = json_pack("{s:s, s:i, s:s, s:o}", "format", "oriel scene", "version",
-                          ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "photographs",
-                          photos);
-        result = *root ? ORL_OK : orl_fail(w->log, ORL_ERR_MEMORY, "no memory for the manifest");
-    }
-    free(path);
-    return result;
+    const char *path = ORL_PATH(scene->dir, "scene.json");
+    if (orl_path_is_file(path))
+        return orl_json_read(w->log, path, root);
+    json_t *photos = json_array();
+    for (size_t i = 0; i < scene->photo_count; i++)
+        json_array_append_new(photos, json_pack("{s:s, s:s}", "name", scene->photos[i].name,
+                                                "split", "train"));
+    *root = json_pack("{s:s, s:i, s:s, s:o}", "format", "oriel scene", "version",
+                      ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "photographs",
+                      photos);
+    return *root ? ORL_OK : orl_fail(w->log, ORL_ERR_MEMORY, "no memory for the manifest");
 }
 
 // Lists the photographs that trimming removed under "left_out".
@@ -172,12 +138,8 @@ static void list_left_out(const struct writer *w, json_t *root)
 static enum orl_result write_manifest(const struct writer *w)
 {
     json_t *root;
-    enum orl_result result = read_manifest(w, &root);
-    char *path = orl_path_join(w->log, w->out, "scene.json");
-    if (result != ORL_OK || !path) {
-        free(path);
-        return result == ORL_OK ? ORL_ERR_MEMORY : result;
-    }
+    ORL_TRY(read_manifest(w, &root));
+    const char *path = ORL_PATH(w->out, "scene.json");
     const char *method = w->choice->method->name;
     struct orl_scene_defaults defaults = orl_trim_defaults(w->source, w->state);
     json_t *render = orl_defaults_json(&defaults), *tuned = json_object_get(root, "tuned");
@@ -194,12 +156,11 @@ static enum orl_result write_manifest(const struct writer *w)
     json_object_set_new(json_object_get(root, "counts"), "points",
                         json_integer((json_int_t)w->model->scene.points.count));
     json_object_set_new(root, "trimmed_from", orl_json_string(w->source->scene->dir));
-    result = json_object_set_new(root, "render", render) == 0 &&
-                     json_object_set(root, "checksums", w->sums) == 0
-                 ? orl_json_write(w->log, path, root)
-                 : orl_fail(w->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
+    enum orl_result result =
+        json_object_set_new(root, "render", render) == 0 && json_object_set(root, "checksums", w->sums) == 0
+            ? orl_json_write(w->log, path, root)
+            : orl_fail(w->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
     json_decref(root);
-    free(path);
     return result;
 }
 
@@ -208,7 +169,7 @@ static enum orl_result write_parts(const struct writer *w)
     static const char *const trees[] = {"masks", "background", "occluders", "images_linear",
                                          "frames", "mesh.ply"};
     enum orl_result result = write_photos(w);
-    ORL_THEN(result, write_points(w));
+    ORL_THEN(result, orl_points_write(w->log, ORL_PATH(w->out, "points.ply"), &w->model->scene.points, true));
     ORL_THEN(result, orl_subset_write_model(w->log, w->source->scene, w->keep, w->out));
     ORL_THEN(result, orl_subset_add_checksums(w->log, w->out, w->sums));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(trees); i++)

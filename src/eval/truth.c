@@ -42,11 +42,10 @@ static enum orl_result take_exposures(const struct orl_log *log, const char *pat
 static enum orl_result read_summary(const struct orl_log *log, struct orl_truth *truth)
 {
     json_t *root = NULL;
-    char *path = orl_path_join(log, truth->dir, "synth.json");
-    enum orl_result result = path ? orl_json_read(log, path, &root) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(truth->dir, "synth.json");
+    enum orl_result result = orl_json_read(log, path, &root);
     ORL_THEN(result, take_exposures(log, path, root, truth));
     json_decref(root);
-    free(path);
     return result;
 }
 
@@ -57,18 +56,14 @@ enum orl_result orl_truth_open(const struct orl_log *log, const struct orl_scene
     truth->scene = scene;
     truth->dir = orl_strdup(log, dir);
     truth->ev = orl_array(log, scene->photo_count, sizeof *truth->ev);
-    char *model = orl_path_join(log, scene->dir, ".oriel/calibrate/model");
-    char *vehicle = orl_path_join(log, dir, "vehicle");
-    truth->vehicle = vehicle && orl_path_is_dir(vehicle);
-    free(vehicle);
-    enum orl_result result = truth->dir && truth->ev && model ? read_summary(log, truth)
-                                                              : ORL_ERR_MEMORY;
+    const char *model = ORL_PATH(scene->dir, ".oriel/calibrate/model");
+    truth->vehicle = orl_path_is_dir(ORL_PATH(dir, "vehicle"));
+    enum orl_result result = truth->dir && truth->ev ? read_summary(log, truth) : ORL_ERR_MEMORY;
     if (result == ORL_OK && orl_path_is_dir(model))
         result = orl_colmap_read(log, model, &truth->model);
     else if (result == ORL_OK)
         orl_logf(log, ORL_LOG_WARNING, "%s: no such folder; photographs are taken to have had no "
                  "distortion", model);
-    free(model);
     if (result != ORL_OK)
         orl_truth_finish(truth);
     return result;
@@ -117,9 +112,8 @@ enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth
     memset(radiance, 0, sizeof *radiance);
     const struct orl_photo *photo = &truth->scene->photos[index];
     struct orl_image seen = {0};
-    char *path = orl_format(log, "%s/radiance/%.*s.exr", truth->dir,
-                            (int)orl_path_stem(photo->name), photo->name);
-    enum orl_result result = path ? orl_exr_read(log, path, rgb, 3, &seen) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(truth->dir, "radiance/%.*s.exr", (int)orl_path_stem(photo->name), photo->name);
+    enum orl_result result = orl_exr_read(log, path, rgb, 3, &seen);
     ORL_THEN(result, bring_to_pixels(log, truth, photo, path, &seen, radiance));
     // A photograph of exposure e shows radiance times 2^e. The scene's unit does so at its middle
     // exposure, which is exposure_ev below e.
@@ -128,7 +122,6 @@ enum orl_result orl_truth_read(const struct orl_log *log, const struct orl_truth
     for (size_t i = 0; i < count; i++)
         radiance->f32[i] *= scale;
     orl_image_finish(&seen);
-    free(path);
     return result;
 }
 
@@ -138,15 +131,13 @@ enum orl_result orl_truth_vehicle(const struct orl_log *log, const struct orl_tr
     memset(vehicle, 0, sizeof *vehicle);
     const struct orl_photo *photo = &truth->scene->photos[index];
     struct orl_image mask = {0}, seen = {0};
-    char *path = orl_format(log, "%s/vehicle/%.*s.png", truth->dir,
-                            (int)orl_path_stem(photo->name), photo->name);
-    enum orl_result result = path ? orl_picture_read(log, path, 1, &mask) : ORL_ERR_MEMORY;
+    const char *path = ORL_PATH(truth->dir, "vehicle/%.*s.png", (int)orl_path_stem(photo->name), photo->name);
+    enum orl_result result = orl_picture_read(log, path, 1, &mask);
     ORL_THEN(result, orl_image_init(log, &seen, mask.width, mask.height, 1, ORL_PIXEL_F32));
     for (size_t i = 0; result == ORL_OK && i < orl_image_bytes(&mask); i++)
         seen.f32[i] = (float)mask.u8[i] / 255;
     ORL_THEN(result, bring_to_pixels(log, truth, photo, path, &seen, vehicle));
     orl_image_finish(&mask);
     orl_image_finish(&seen);
-    free(path);
     return result;
 }
