@@ -2,11 +2,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "io/picture.h"
 
 bool orl_frame_can_write(const char *path)
@@ -88,17 +86,10 @@ static enum orl_result write_layer(const struct orl_log *log, const char *path, 
 {
     struct orl_image picture = {0};
     int stem = (int)(strlen(path) - strlen(".png"));
-    char *layer_path = orl_format(log, "%.*s.%s.png", stem, path, name);
-    enum orl_result result =
-        layer_path ? orl_image_init(log, &picture, layer->width, layer->height, layer->channels,
-                                    ORL_PIXEL_U8)
-                   : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        layer_picture(layer, is_depth, &picture);
-        result = orl_png_write(log, layer_path, &picture);
-    }
+    ORL_TRY(orl_image_init(log, &picture, layer->width, layer->height, layer->channels, ORL_PIXEL_U8));
+    layer_picture(layer, is_depth, &picture);
+    enum orl_result result = orl_png_write(log, ORL_PATH("", "%.*s.%s.png", stem, path, name), &picture);
     orl_image_finish(&picture);
-    free(layer_path);
     return result;
 }
 

@@ -1,10 +1,8 @@
 #include "render/output/sequence.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "io/video.h"
 
 enum orl_result orl_sequence_write_view(const struct orl_log *log, const struct orl_sequence *s,
@@ -24,9 +22,7 @@ enum orl_result orl_sequence_write_dir(const struct orl_log *log, const struct o
     for (size_t i = s->first; result == ORL_OK && i < s->count; i++) {
         if (orl_progress_cancelled(s->progress))
             return ORL_ERR_CANCELLED;
-        char *file = orl_format(log, "%s/%05zu.%s", dir, i, extension);
-        result = file ? orl_sequence_write_view(log, s, &s->views[i], file) : ORL_ERR_MEMORY;
-        free(file);
+        result = orl_sequence_write_view(log, s, &s->views[i], ORL_PATH(dir, "%05zu.%s", i, extension));
         orl_progress_report(s->progress, s->step, (double)(i + 1 - s->first),
                             (double)(s->count - s->first), NULL);
     }
@@ -36,17 +32,12 @@ enum orl_result orl_sequence_write_dir(const struct orl_log *log, const struct o
 enum orl_result orl_sequence_write_video(const struct orl_log *log, const struct orl_sequence *s,
                                          const char *file, double fps)
 {
-    char *dir = orl_format(log, "%s.frames", file);
-    if (!dir)
-        return ORL_ERR_MEMORY;
-    if (orl_path_is_dir(dir)) {
-        free(dir);
+    const char *dir = ORL_PATH("", "%s.frames", file);
+    if (orl_path_is_dir(dir))
         return orl_fail(log, ORL_ERR_ARGUMENT,
                         "%s.frames is in the way: frames are kept there meanwhile", file);
-    }
     enum orl_result result = orl_sequence_write_dir(log, s, dir, "png");
     ORL_THEN(result, orl_video_encode(log, s->progress, dir, fps, file));
     enum orl_result removed = orl_dir_remove(log, dir);
-    free(dir);
     return result != ORL_OK ? result : removed;
 }

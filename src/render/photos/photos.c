@@ -122,14 +122,6 @@ static size_t slot_bytes(const struct photos *photos, const struct slot_size *si
            (photos->places ? color_bytes(&background, size) : 0);
 }
 
-static bool has_soft_splats(const struct orl_scene *scene)
-{
-    char *path = orl_path_join(NULL, scene->dir, ORL_SOFT_NAME);
-    bool has = path && orl_path_is_file(path);
-    free(path);
-    return has;
-}
-
 static bool fits_all(const struct photos *photos, const struct slot_size *size, int count,
                      size_t budget)
 {
@@ -224,7 +216,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     for (size_t i = 0; i < scene->photo_count; i++)
         photos->silhouettes |= photos->states[i].usable && scene->photos[i].masked;
     photos->places = orl_photos_backgrounds(photos);
-    photos->soft_splats = !photos->radiance && has_soft_splats(scene);
+    photos->soft_splats = !photos->radiance && orl_path_is_file(ORL_PATH(scene->dir, ORL_SOFT_NAME));
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
     enum orl_textures textures = ORL_TEXTURES_AUTO;
     enum orl_result result = orl_textures_choose(log, scene, params, &textures);
