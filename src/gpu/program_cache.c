@@ -83,8 +83,9 @@ void orl_program_cache_close(struct orl_gpu *gpu)
     gpu->program_cache = NULL;
 }
 
-// Names the entry by a hash of everything that determines the linked program.
-static char *entry_path(const struct orl_gpu *gpu, const struct shader_source *source)
+// Names the entry by a hash of everything that determines the linked program. NULL: out of memory.
+static const char *entry_path(const struct orl_gpu *gpu, const struct shader_source *source,
+                              char path[ORL_PATH_SIZE])
 {
     const struct orl_gpu_caps *caps = &gpu->caps;
     const char *const parts[] = {source->text.data, caps->vendor, caps->renderer, caps->version,
@@ -97,8 +98,8 @@ static char *entry_path(const struct orl_gpu *gpu, const struct shader_source *s
         XXH3_128bits_update(state, parts[i], strlen(parts[i]) + 1); // with the terminating 0
     XXH128_hash_t hash = XXH3_128bits_digest(state);
     XXH3_freeState(state);
-    return orl_format(NULL, "%s/programs/%016llx%016llx", gpu->program_cache,
-                      (unsigned long long)hash.high64, (unsigned long long)hash.low64);
+    return orl_path_print(path, gpu->program_cache, "programs/%016llx%016llx",
+                          (unsigned long long)hash.high64, (unsigned long long)hash.low64);
 }
 
 static bool format_known(GLenum format)
@@ -138,13 +139,12 @@ bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *sou
 {
     uint8_t *data = NULL;
     size_t size;
-    char *path = gpu->program_cache ? entry_path(gpu, source) : NULL;
-    bool hit = path && orl_path_is_file(path) &&
+    char path[ORL_PATH_SIZE];
+    bool hit = gpu->program_cache && entry_path(gpu, source, path) && orl_path_is_file(path) &&
                orl_file_read(NULL, path, BINARY_MAX_BYTES, &data, &size) == ORL_OK &&
                load_binary(data, size, program);
     gpu->cached_progs += hit;
     free(data);
-    free(path);
     return hit;
 }
 
@@ -152,13 +152,11 @@ bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *sou
 static bool prepare_folder(const char *dir)
 {
     struct orl_names names = {0};
-    char *programs = orl_path_join(NULL, dir, "programs");
-    bool ok = programs && orl_dir_make(NULL, programs) == ORL_OK &&
-              orl_dir_list(NULL, programs, &names) == ORL_OK;
+    const char *programs = ORL_PATH(dir, "programs");
+    bool ok = orl_dir_make(NULL, programs) == ORL_OK && orl_dir_list(NULL, programs, &names) == ORL_OK;
     if (ok && names.count >= ENTRIES_MAX)
         ok = orl_dir_remove(NULL, programs) == ORL_OK && orl_dir_make(NULL, programs) == ORL_OK;
     orl_names_finish(&names);
-    free(programs);
     return ok;
 }
 
@@ -173,9 +171,9 @@ void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *so
         return;
     struct header header = {0};
     GLenum format = 0;
-    char *path = entry_path(gpu, source);
+    char path[ORL_PATH_SIZE];
     uint8_t *data = orl_array(NULL, sizeof header + (size_t)length, 1);
-    if (!path || !data || !prepare_folder(gpu->program_cache))
+    if (!entry_path(gpu, source, path) || !data || !prepare_folder(gpu->program_cache))
         goto end;
     glGetProgramBinary(program, length, &length, &format, data + sizeof header);
     memcpy(header.magic, magic, sizeof magic);
@@ -187,5 +185,4 @@ void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *so
         orl_logf(gpu->log, ORL_LOG_DEBUG, "%s cannot be written: programs are not kept", path);
 end:
     free(data);
-    free(path);
 }

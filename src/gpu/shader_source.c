@@ -27,11 +27,9 @@ static enum orl_result read_text(struct orl_gpu *gpu, const char *file, const ch
         return orl_fail(gpu->log, ORL_ERR_NOT_FOUND, "shader %s is not known", file);
     if (!gpu->shader_dir)
         return ORL_OK;
-    char *path = orl_path_join(gpu->log, gpu->shader_dir, file);
     size_t size;
     enum orl_result result =
-        path ? orl_file_read(gpu->log, path, SHADER_MAX_BYTES, owned, &size) : ORL_ERR_MEMORY;
-    free(path);
+        orl_file_read(gpu->log, ORL_PATH(gpu->shader_dir, "%s", file), SHADER_MAX_BYTES, owned, &size);
     *text = (const char *)*owned;
     return result;
 }
