@@ -5,7 +5,6 @@
 
 #include "core/file.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "core/new_dir.h"
 #include "exchange/kinds.h"
 
@@ -25,10 +24,8 @@ static json_t *pack_matrix(const struct orl_pose *pose, const double origin[3])
 static enum orl_result copy(const struct orl_log *log, char *from, const char *dir,
                             const char *name)
 {
-    char *to = orl_path_join(log, dir, name);
-    enum orl_result result = from && to ? orl_file_copy(log, from, to) : ORL_ERR_MEMORY;
+    enum orl_result result = from ? orl_file_copy(log, from, ORL_PATH(dir, "%s", name)) : ORL_ERR_MEMORY;
     free(from);
-    free(to);
     return result;
 }
 
@@ -37,28 +34,21 @@ static enum orl_result add_frame(const struct orl_log *log, const struct orl_sce
 {
     const struct orl_photo *p = &scene->photos[photo];
     const struct orl_camera *c = &p->view.camera;
-    char *image = orl_format(log, "images/%s", p->name);
-    char *mask = p->masked ? orl_format(log, "masks/%s.png", p->name) : NULL;
-    enum orl_result result = image && (mask || !p->masked) ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        json_t *frame = json_pack(
-            "{s:o, s:i, s:i, s:f, s:f, s:f, s:f, s:o}", "file_path", orl_json_string(image), "w",
-            c->width, "h", c->height, "fl_x", c->fx, "fl_y", c->fy, "cx", c->cx, "cy", c->cy,
-            "transform_matrix", pack_matrix(&p->view.cam_from_world, scene->origin));
-        if (mask)
-            json_object_set_new(frame, "mask_path", orl_json_string(mask));
-        json_array_append_new(json_object_get(root, "frames"), frame);
-        json_array_append_new(json_object_get(root, p->test ? "test_filenames" : "train_filenames"),
-                              orl_json_string(image));
-        if (p->test) // nerfstudio evaluates on these
-            json_array_append_new(json_object_get(root, "val_filenames"), orl_json_string(image));
-        result = copy(log, orl_scene_photo_path(log, scene, photo), dir, image);
-    }
-    if (result == ORL_OK && mask)
-        result = copy(log, orl_scene_mask_path(log, scene, photo), dir, mask);
-    free(image);
-    free(mask);
-    return result;
+    const char *image = ORL_PATH("images", "%s", p->name);
+    const char *mask = p->masked ? ORL_PATH("masks", "%s.png", p->name) : NULL;
+    json_t *frame = json_pack(
+        "{s:o, s:i, s:i, s:f, s:f, s:f, s:f, s:o}", "file_path", orl_json_string(image), "w",
+        c->width, "h", c->height, "fl_x", c->fx, "fl_y", c->fy, "cx", c->cx, "cy", c->cy,
+        "transform_matrix", pack_matrix(&p->view.cam_from_world, scene->origin));
+    if (mask)
+        json_object_set_new(frame, "mask_path", orl_json_string(mask));
+    json_array_append_new(json_object_get(root, "frames"), frame);
+    json_array_append_new(json_object_get(root, p->test ? "test_filenames" : "train_filenames"),
+                          orl_json_string(image));
+    if (p->test) // nerfstudio evaluates on these
+        json_array_append_new(json_object_get(root, "val_filenames"), orl_json_string(image));
+    ORL_TRY(copy(log, orl_scene_photo_path(log, scene, photo), dir, image));
+    return mask ? copy(log, orl_scene_mask_path(log, scene, photo), dir, mask) : ORL_OK;
 }
 
 static enum orl_result fill(const struct orl_log *log, const struct orl_progress *progress,
@@ -66,9 +56,7 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
 {
     json_t *root = json_pack("{s:s, s:[], s:[], s:[], s:[]}", "camera_model", "PINHOLE",
                              "train_filenames", "val_filenames", "test_filenames", "frames");
-    char *file = orl_path_join(log, dir, "transforms.json");
-    char *points = orl_path_join(log, dir, "points.ply");
-    enum orl_result result = root && file && points ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = root ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (orl_progress_cancelled(progress))
             result = ORL_ERR_CANCELLED;
@@ -79,12 +67,10 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
     }
     if (result == ORL_OK && scene->points.count) { // a cloud of none is no start for training
         json_object_set_new(root, "ply_file_path", json_string("points.ply"));
-        result = orl_points_write_from(log, points, &scene->points, scene->origin);
+        result = orl_points_write_from(log, ORL_PATH(dir, "points.ply"), &scene->points, scene->origin);
     }
-    ORL_THEN(result, orl_json_write(log, file, root));
+    ORL_THEN(result, orl_json_write(log, ORL_PATH(dir, "transforms.json"), root));
     json_decref(root);
-    free(points);
-    free(file);
     return result;
 }
 
