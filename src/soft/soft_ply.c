@@ -1,6 +1,5 @@
 #include "soft/soft_ply.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/file.h"
@@ -90,12 +89,9 @@ enum orl_result orl_soft_read(const struct orl_log *log, const char *path, struc
 
 enum orl_result orl_soft_read_scene(const struct orl_log *log, const char *scene_dir, struct orl_soft_model *model)
 {
-    char *path = orl_path_join(log, scene_dir, ORL_SOFT_NAME);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && !orl_path_is_file(path))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws "
-                          "without", path, scene_dir);
-    ORL_THEN(result, orl_soft_read(log, path, model));
-    free(path);
-    return result;
+    const char *path = ORL_PATH(scene_dir, ORL_SOFT_NAME);
+    if (!orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: missing; oriel refine %s makes it, and --set soft=0 draws "
+                        "without", path, scene_dir);
+    return orl_soft_read(log, path, model);
 }
