@@ -193,11 +193,8 @@ enum orl_result orl_flush(const struct orl_log *log, const char *path)
         return ORL_OK;
     struct orl_names names;
     enum orl_result result = orl_dir_list(log, path, &names);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *child = orl_path_join(log, path, names.items[i]);
-        result = child ? orl_flush(log, child) : ORL_ERR_MEMORY;
-        free(child);
-    }
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++)
+        result = orl_flush(log, ORL_PATH(path, "%s", names.items[i]));
     orl_names_finish(&names);
     return result;
 }
@@ -269,12 +266,9 @@ enum orl_result orl_dir_sweep(const struct orl_log *log, const char *dir)
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
         if (!orl_temp_is_of(names.items[i], orl_part_prefix, NULL))
             continue;
-        char *path = orl_path_join(log, dir, names.items[i]);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (is_stale(path) && orl_dir_remove(NULL, path) == ORL_OK)
+        const char *path = ORL_PATH(dir, "%s", names.items[i]);
+        if (is_stale(path) && orl_dir_remove(NULL, path) == ORL_OK)
             orl_logf(log, ORL_LOG_DEBUG, "%s: removed, its writer is gone", path);
-        free(path);
     }
     orl_names_finish(&names);
     return result;

@@ -227,10 +227,7 @@ enum orl_result orl_file_make_folder(const struct orl_log *log, const char *path
     const char *name = orl_path_name(path);
     if (name == path)
         return ORL_OK;
-    char *folder = orl_format(log, "%.*s", (int)(name - path), path);
-    enum orl_result result = folder ? orl_dir_make(log, folder) : ORL_ERR_MEMORY;
-    free(folder);
-    return result;
+    return orl_dir_make(log, ORL_PATH("", "%.*s", (int)(name - path), path));
 }
 
 enum orl_result orl_file_copy(const struct orl_log *log, const char *from, const char *to)
@@ -286,11 +283,8 @@ enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
     if (S_ISDIR(st.st_mode)) {
         struct orl_names names;
         enum orl_result result = orl_dir_list(log, path, &names);
-        for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-            char *child = orl_path_join(log, path, names.items[i]);
-            result = child ? orl_dir_remove(log, child) : ORL_ERR_MEMORY;
-            free(child);
-        }
+        for (size_t i = 0; result == ORL_OK && i < names.count; i++)
+            result = orl_dir_remove(log, ORL_PATH(path, "%s", names.items[i]));
         orl_names_finish(&names);
         if (result != ORL_OK)
             return result;

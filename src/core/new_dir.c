@@ -16,13 +16,6 @@
 static const char old_prefix[] = ".oriel-old-";
 enum { TRIES_MAX = 16, WAITS_MAX = 500, WAIT_NS = 10000000 };
 
-static char *parent_of(const struct orl_log *log, const char *path)
-{
-    const char *name = orl_path_name(path);
-    return name == path ? orl_strdup(log, ".")
-                        : orl_format(log, "%.*s", (int)(name - path), path);
-}
-
 // Whoever looks for other runs and then makes a folder does so alone. -1: there are no locks here,
 // or another program holds this one for long.
 static int lock_parent(const char *parent)
@@ -72,14 +65,11 @@ static enum orl_result meet_others(const struct orl_log *log, const char *parent
     struct orl_names names;
     enum orl_result result = orl_dir_list(log, parent, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *path = orl_path_join(log, parent, names.items[i]);
-        if (!path)
-            result = ORL_ERR_MEMORY;
-        else if (over && orl_temp_is_of(names.items[i], old_prefix, out))
+        const char *path = ORL_PATH(parent, "%s", names.items[i]);
+        if (over && orl_temp_is_of(names.items[i], old_prefix, out))
             result = restore(log, path, out);
         else if (orl_temp_is_of(names.items[i], orl_part_prefix, out) && is_locked(path))
             result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: another oriel is making it", out);
-        free(path);
     }
     orl_names_finish(&names);
     return result == ORL_OK && orl_dir_sweep(log, parent) == ORL_ERR_MEMORY ? ORL_ERR_MEMORY
@@ -115,8 +105,11 @@ static enum orl_result begin(const struct orl_log *log, const char *out, bool ov
     char *named = orl_path_append(log, out, ""); // without slashes at its end
     *dir = (struct orl_new_dir){.fd = -1};
     enum orl_result result = named ? orl_path_follow(log, named, &dir->out) : ORL_ERR_MEMORY;
-    char *parent = result == ORL_OK ? parent_of(log, dir->out) : NULL;
-    ORL_THEN(result, parent ? orl_dir_make(log, parent) : ORL_ERR_MEMORY);
+    free(named);
+    ORL_TRY(result);
+    const char *name = orl_path_name(dir->out);
+    const char *parent = name == dir->out ? "." : ORL_PATH("", "%.*s", (int)(name - dir->out), dir->out);
+    result = orl_dir_make(log, parent);
     int lock = result == ORL_OK ? lock_parent(parent) : -1;
     ORL_THEN(result, meet_others(log, parent, dir->out, over));
     ORL_THEN(result, make(log, dir));
@@ -124,8 +117,6 @@ static enum orl_result begin(const struct orl_log *log, const char *out, bool ov
         close(lock);
     if (result != ORL_OK)
         orl_new_dir_abort(log, dir);
-    free(parent);
-    free(named);
     return result;
 }
 
