@@ -56,15 +56,15 @@
         "neighbours of surfaces that no photograph painted (`holes`).") \
     NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
-    NUMBER(photos_per_pixel, 3, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
+    NUMBER(photos_per_pixel, 4, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
         "The most photographs that are blended into a pixel.") \
-    NUMBER(candidates, 6, 1, 8, "photographs", "paint=tiled", ORL_NO_TRIES, \
+    NUMBER(candidates, 5, 1, 8, "photographs", "paint=tiled", ORL_NO_TRIES, \
         "How many photographs of its tile a pixel asks. Fewer are faster, and miss more " \
         "behind occluders.") \
     NUMBER(outliers, 0.3f, 0, 1, "square root of light", "combine=robust", ORL_NO_TRIES, \
         "A sample that differs from the consensus by this much counts half. With 0 there are " \
         "no outliers.") \
-    NUMBER(sharpness, 4, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
+    NUMBER(sharpness, 3, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
         "How strongly the better photograph is preferred. With 0 all weigh the same.") \
     NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard " \
         "visibility=soft visibility=shadow visibility=opaque paint=tiled", \
@@ -89,7 +89,8 @@
         "differ. They are blurred as far. With 0 they are not.") \
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known, from the guess to " \
-        "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
+        "infinity. The guess moves to where photographs do not see past it. With 0 it stays. A scene " \
+        "without a hull of silhouettes has 0 unless told otherwise.") \
     NUMBER(soft, 0, 0, 1, "share", "paint=tiled", ORL_NO_TRIES, \
         "How far the scene's soft splats (`oriel refine`) correct structure that photographs have in the " \
         "wrong place. They mend what stereo cannot see, and `oriel refine` finds a good share.") \

@@ -192,7 +192,7 @@ static bool has_mesh(const struct orl_scene *scene)
     return there;
 }
 
-// Takes another proxy where the scene lacks what the method's own is made of.
+// Takes another proxy where the scene lacks what the method's own is made of, and leaves out what does not suit it.
 static void suit_scene(const struct orl_scene *scene, struct orl_render_params *params)
 {
     const struct orl_proxy_kind *kind = params->proxy;
@@ -206,6 +206,9 @@ static void suit_scene(const struct orl_scene *scene, struct orl_render_params *
     // Voxels of points have holes where a hull has none.
     if (kind == &orl_proxy_voxels && !has_silhouettes(scene))
         params->fill = ORL_FILL_COLOR;
+    // Before other backdrops, depths that are tried gain next to nothing.
+    if (!scene->has_hull)
+        params->guess_depths = 0;
 }
 
 bool orl_render_params_take_proxy(const struct orl_render_params *from,
