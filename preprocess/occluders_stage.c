@@ -21,13 +21,12 @@ static enum orl_result write_masks(struct orl_job *job, const struct orl_scene *
             continue;
         if (written++ == 0)
             result = orl_job_fresh_dir(job, "occluders");
-        char *path = orl_scene_occluders_path(job->log, scene, i);
-        ORL_THEN(result, path ? orl_file_make_folder(job->log, path) : ORL_ERR_MEMORY);
-        ORL_THEN(result, orl_png_write(job->log, path, &masks[i]));
+        const struct orl_file_path path = orl_scene_occluders_path(scene, i);
+        ORL_THEN(result, orl_file_make_folder(job->log, path.text));
+        ORL_THEN(result, orl_png_write(job->log, path.text, &masks[i]));
         if (result == ORL_OK && json_object_set_new(occluded, scene->photos[i].name,
                                                     json_real(shares[i])) != 0)
             result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
-        free(path);
     }
     if (result == ORL_OK && written == 0)
         result = orl_job_remove(job, "occluders");

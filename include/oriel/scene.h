@@ -133,28 +133,23 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
 // ORL_ERR_ARGUMENT: there is no such frame. ORL_ERR_NOT_FOUND: one of its photographs is missing.
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene,
                                     int frame) ORL_CHECK_RESULT;
-// "SCENE/images/<name>", or "SCENE/frames/<number>/images/<name>" when a frame is selected. This
-// and the paths below are released with free().
-char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene,
-                           size_t photo);
+// "SCENE/images/<name>", or "SCENE/frames/<number>/images/<name>" when a frame is selected.
+struct orl_file_path orl_scene_photo_path(const struct orl_scene *scene, size_t photo);
 // The photograph's mask or silhouette (silhouette.h): "SCENE/masks/<name>.png", or
 // "SCENE/frames/<number>/masks/<name>.png" when a frame is selected. The mask is as large as the
 // photograph and 0 outside the subject. The file exists when photo->masked.
-char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo);
+struct orl_file_path orl_scene_mask_path(const struct orl_scene *scene, size_t photo);
 // Where the photograph shows what stands before the scene and has no points: a mask of any size,
 // 255 there, else 0: "SCENE/occluders/<name>.png". The file exists when photo->occluded > 0. It is
 // of SCENE/images, not of the time steps of a sequence.
-char *orl_scene_occluders_path(const struct orl_log *log, const struct orl_scene *scene,
-                               size_t photo);
+struct orl_file_path orl_scene_occluders_path(const struct orl_scene *scene, size_t photo);
 // A picture of the place without the subject: "SCENE/background/<name>.png". The file may be
 // missing.
-char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
-                                size_t photo);
+struct orl_file_path orl_scene_background_path(const struct orl_scene *scene, size_t photo);
 // "SCENE/mesh.ply", or the mesh of the selected frame, "SCENE/frames/<number>/mesh.ply", where there
 // is one. The file may be missing.
-char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene);
+struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene);
 // "SCENE/images_linear/<name>.exr". The file may be missing.
-char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene,
-                            size_t photo);
+struct orl_file_path orl_scene_linear_path(const struct orl_scene *scene, size_t photo);
 
 #endif

@@ -41,15 +41,13 @@ enum orl_result orl_reduced_read(const struct orl_log *log, const struct orl_sce
     memset(out, 0, sizeof *out);
     out->view = *view;
     out->view.camera = orl_camera_resized(c, width, height);
-    char *path = orl_scene_photo_path(log, scene, photo);
-    enum orl_result result = path ? orl_picture_read(log, path, 3, &picture) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_bridge_resize(log, &picture, width, height, &out->picture));
+    ORL_TRY(orl_picture_read(log, orl_scene_photo_path(scene, photo).text, 3, &picture));
+    enum orl_result result = orl_bridge_resize(log, &picture, width, height, &out->picture);
     orl_image_finish(&picture);
-    free(path);
-    if (result == ORL_OK && !(out->open = orl_array(log, count, sizeof *out->open)))
-        result = ORL_ERR_MEMORY;
     if (result != ORL_OK)
         return result;
+    out->open = orl_array(log, count, sizeof *out->open);
+    ORL_TRY_MEMORY(out->open);
     for (size_t i = 0; i < count; i++)
         out->open[i] = true;
     cover(&scene->points, out);

@@ -2,17 +2,14 @@
 #ifndef ORL_CORE_FILE_H
 #define ORL_CORE_FILE_H
 
-#include <limits.h>
 #include <stdio.h>
 
 #include "oriel/log.h"
 #include "oriel/names.h"
 
-// Bytes of a path. One that fills them is longer than any that the system takes.
-enum { ORL_PATH_SIZE = PATH_MAX + 1 };
 // ORL_PATH(DIR, FORMAT, ...): the path "DIR/<name>" of a printed name, or the name alone when DIR is "". It lives in the
-// enclosing block (a branch or a loop's body without braces is a block, too) and nobody releases it. A path that is too
-// long is cut but remains too long, so that nothing opens it.
+// enclosing block (a branch or a loop's body without braces is a block, too) and nobody releases it. What is too long is
+// cut as in struct orl_file_path.
 #define ORL_PATH(...) orl_path_print((char[ORL_PATH_SIZE]){""}, __VA_ARGS__)
 const char *orl_path_print(char path[ORL_PATH_SIZE], const char *dir, const char *format, ...) ORL_PRINTF(3, 4);
 // "dir/name", released with free(); NULL, logged, when memory runs out.

@@ -69,8 +69,7 @@ static enum orl_result read_occluders(const struct refine *r, size_t photo, stru
         return ORL_OK;
     struct orl_image mask = {0};
     const int width = to->color.width, height = to->color.height;
-    char *path = orl_scene_occluders_path(r->log, r->scene, photo);
-    enum orl_result result = path ? orl_picture_read(r->log, path, 1, &mask) : ORL_ERR_MEMORY;
+    enum orl_result result = orl_picture_read(r->log, orl_scene_occluders_path(r->scene, photo).text, 1, &mask);
     ORL_THEN(result, orl_image_init(r->log, &to->use, width, height, 1, ORL_PIXEL_U8));
     for (int y = 0; result == ORL_OK && y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -78,7 +77,6 @@ static enum orl_result read_occluders(const struct refine *r, size_t photo, stru
             to->use.u8[(size_t)y * (size_t)width + (size_t)x] = mask.u8[from] < 128;
         }
     orl_image_finish(&mask);
-    free(path);
     return result;
 }
 
@@ -316,13 +314,11 @@ static enum orl_result make_splats(struct refine *r, const struct orl_mesh *mesh
 static enum orl_result begin(struct refine *r)
 {
     struct orl_mesh mesh = {0};
-    char *path = orl_scene_mesh_path(r->log, r->scene);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
-    if (path && r->scene->points.count == 0 && orl_path_is_file(path))
-        result = orl_mesh_read(r->log, path, &mesh);
-    ORL_THEN(result, make_splats(r, &mesh));
+    const struct orl_file_path path = orl_scene_mesh_path(r->scene);
+    if (r->scene->points.count == 0 && orl_path_is_file(path.text))
+        ORL_TRY(orl_mesh_read(r->log, path.text, &mesh));
+    enum orl_result result = make_splats(r, &mesh);
     orl_mesh_finish(&mesh);
-    free(path);
     return result;
 }
 

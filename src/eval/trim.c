@@ -59,7 +59,7 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
         orl_trim_count_bytes(s->source.gpu, &figures->point_bytes, &figures->photo_bytes);
         for (int i = 0; i < ORL_OWNER_COUNT; i++)
             figures->device_bytes += orl_gpu_owner_bytes(s->source.gpu, (enum orl_owner)i);
-        figures->file_bytes = orl_trim_scene_file_bytes(s->source.log, scene);
+        figures->file_bytes = orl_trim_scene_file_bytes(scene);
     }
     orl_renderer_destroy(&renderer);
     orl_scene_destroy(&scene);

@@ -27,25 +27,19 @@ struct writer {
 static size_t file_size(const char *path)
 {
     struct stat status;
-    return path && stat(path, &status) == 0 && S_ISREG(status.st_mode) ? (size_t)status.st_size
-                                                                       : 0;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode) ? (size_t)status.st_size : 0;
 }
 
-size_t orl_trim_scene_file_bytes(const struct orl_log *log, const struct orl_scene *scene)
+size_t orl_trim_scene_file_bytes(const struct orl_scene *scene)
 {
     static const char *const names[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
                                         "sparse/points3D.bin", "mesh.ply"};
     size_t bytes = 0;
     for (size_t i = 0; i < ORL_COUNT(names); i++)
         bytes += file_size(ORL_PATH(scene->dir, "%s", names[i]));
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        char *photo = orl_scene_photo_path(log, scene, i);
-        char *mask = orl_scene_mask_path(log, scene, i);
+    for (size_t i = 0; i < scene->photo_count; i++)
         if (!scene->photos[i].test)
-            bytes += file_size(photo) + file_size(mask);
-        free(photo);
-        free(mask);
-    }
+            bytes += file_size(orl_scene_photo_path(scene, i).text) + file_size(orl_scene_mask_path(scene, i).text);
     return bytes;
 }
 

@@ -1,7 +1,6 @@
 // nerfstudio's folder: transforms.json with the cameras and the split, photographs, masks, points.
 // The world is the one that was imported; only a camera's own axes are OpenGL's.
 #include <jansson.h>
-#include <stdlib.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -19,14 +18,6 @@ static json_t *pack_matrix(const struct orl_pose *pose, const double origin[3])
                                               -pose->r[2][i], eye[i] + origin[i]));
     json_array_append_new(rows, json_pack("[i, i, i, i]", 0, 0, 0, 1));
     return rows;
-}
-
-static enum orl_result copy(const struct orl_log *log, char *from, const char *dir,
-                            const char *name)
-{
-    enum orl_result result = from ? orl_file_copy(log, from, ORL_PATH(dir, "%s", name)) : ORL_ERR_MEMORY;
-    free(from);
-    return result;
 }
 
 static enum orl_result add_frame(const struct orl_log *log, const struct orl_scene *scene,
@@ -47,8 +38,8 @@ static enum orl_result add_frame(const struct orl_log *log, const struct orl_sce
                           orl_json_string(image));
     if (p->test) // nerfstudio evaluates on these
         json_array_append_new(json_object_get(root, "val_filenames"), orl_json_string(image));
-    ORL_TRY(copy(log, orl_scene_photo_path(log, scene, photo), dir, image));
-    return mask ? copy(log, orl_scene_mask_path(log, scene, photo), dir, mask) : ORL_OK;
+    ORL_TRY(orl_file_copy(log, orl_scene_photo_path(scene, photo).text, ORL_PATH(dir, "%s", image)));
+    return mask ? orl_file_copy(log, orl_scene_mask_path(scene, photo).text, ORL_PATH(dir, "%s", mask)) : ORL_OK;
 }
 
 static enum orl_result fill(const struct orl_log *log, const struct orl_progress *progress,

@@ -144,22 +144,17 @@ static void add(const struct fit *fit, const struct orl_photo *photo, const stru
 static enum orl_result read_picture(const struct fit *fit, size_t photo, struct picture *p)
 {
     const struct orl_photo *of = &fit->scene->photos[photo];
-    char *path = orl_scene_photo_path(fit->log, fit->scene, photo);
-    char *before = of->occluded > 0 ? orl_scene_occluders_path(fit->log, fit->scene, photo) : NULL;
-    enum orl_result result = path && (before || !(of->occluded > 0)) ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_picture_read(fit->log, path, 3, &p->image));
-    if (result == ORL_OK && (p->image.width != of->view.camera.width ||
-                             p->image.height != of->view.camera.height))
-        result = orl_fail(fit->log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
-                          path, p->image.width, p->image.height, of->view.camera.width,
-                          of->view.camera.height);
-    if (result == ORL_OK && before)
-        result = orl_picture_read(fit->log, before, 1, &p->occluders);
+    const struct orl_file_path path = orl_scene_photo_path(fit->scene, photo);
+    ORL_TRY(orl_picture_read(fit->log, path.text, 3, &p->image));
+    if (p->image.width != of->view.camera.width || p->image.height != of->view.camera.height)
+        return orl_fail(fit->log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
+                        path.text, p->image.width, p->image.height, of->view.camera.width,
+                        of->view.camera.height);
     for (int v = 0; v < 256; v++)
         p->linear[v] = orl_srgb_decode((float)v / 255);
-    free(path);
-    free(before);
-    return result;
+    return of->occluded > 0 ? orl_picture_read(fit->log, orl_scene_occluders_path(fit->scene, photo).text, 1,
+                                               &p->occluders)
+                            : ORL_OK;
 }
 
 static enum orl_result add_photo(const struct fit *fit, size_t photo)

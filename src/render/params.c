@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "render/frame/method.h"
 #include "render/hull/voxel_proxy.h"
 #include "render/paint/gather.h"
@@ -186,10 +185,7 @@ static bool has_silhouettes(const struct orl_scene *scene)
 
 static bool has_mesh(const struct orl_scene *scene)
 {
-    char *path = orl_scene_mesh_path(NULL, scene);
-    bool there = path && orl_path_is_file(path);
-    free(path);
-    return there;
+    return orl_path_is_file(orl_scene_mesh_path(scene).text);
 }
 
 // Takes another proxy where the scene lacks what the method's own is made of, and leaves out what does not suit it.

@@ -54,15 +54,11 @@ static enum orl_result read_optics(const struct orl_json_place *place, const jso
                             : result;
 }
 
-// Refuses a photograph without the file that scene.json promises. Takes ownership of `path`.
-static enum orl_result need_file(const struct orl_json_place *place, char *path, const char *what)
+// Refuses a photograph without the file that scene.json promises.
+static enum orl_result need_file(const struct orl_json_place *place, struct orl_file_path path, const char *what)
 {
-    ORL_TRY_MEMORY(path);
-    enum orl_result result = ORL_OK;
-    if (!orl_path_is_file(path))
-        result = orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: %s missing", path, what);
-    free(path);
-    return result;
+    return orl_path_is_file(path.text)
+               ? ORL_OK : orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: %s missing", path.text, what);
 }
 
 static enum orl_result read_mask(const struct orl_json_place *place, const json_t *entry,
@@ -71,9 +67,7 @@ static enum orl_result read_mask(const struct orl_json_place *place, const json_
     enum orl_result result = orl_json_bool(place, entry, "mask", &photo->masked);
     if (result != ORL_OK || !photo->masked)
         return result;
-    return need_file(place,
-                     orl_scene_mask_path(place->log, scene, (size_t)(photo - scene->photos)),
-                     "this mask is");
+    return need_file(place, orl_scene_mask_path(scene, (size_t)(photo - scene->photos)), "this mask is");
 }
 
 static enum orl_result read_occluders(const struct orl_json_place *place, const json_t *entry,
@@ -84,9 +78,7 @@ static enum orl_result read_occluders(const struct orl_json_place *place, const 
     photo->occluded = (float)share;
     if (result != ORL_OK || !(photo->occluded > 0))
         return result;
-    return need_file(place,
-                     orl_scene_occluders_path(place->log, scene, (size_t)(photo - scene->photos)),
-                     "these occluders are");
+    return need_file(place, orl_scene_occluders_path(scene, (size_t)(photo - scene->photos)), "these occluders are");
 }
 
 static enum orl_result read_radiance(const struct orl_json_place *place, const json_t *entry,

@@ -52,41 +52,33 @@ static enum orl_result check_inside(const struct orl_log *log, const struct orl_
                           "there", path);
 }
 
-// Takes ownership of `path`. The file may be missing.
+// The file may be missing.
 static enum orl_result check_if_there(const struct orl_log *log, const struct orl_scene *scene,
-                                      char *path, bool *there)
+                                      struct orl_file_path path, bool *there)
 {
-    *there = path && orl_path_is_file(path);
-    enum orl_result result = !path    ? ORL_ERR_MEMORY
-                             : *there ? check_inside(log, scene, path)
-                                      : ORL_OK;
-    free(path);
-    return result;
+    *there = orl_path_is_file(path.text);
+    return *there ? check_inside(log, scene, path.text) : ORL_OK;
 }
 
 static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *scene, size_t i)
 {
     struct orl_photo *photo = &scene->photos[i];
     bool there, linear, masked;
-    enum orl_result result =
-        check_if_there(log, scene, orl_scene_photo_path(log, scene, i), &there);
-    if (result == ORL_OK && !there)
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
-                          scene->dir, photo->name);
-    ORL_THEN(result, check_if_there(log, scene, orl_scene_linear_path(log, scene, i), &linear));
-    photo->linear = result == ORL_OK && linear && !shows_time_step(scene);
-    ORL_THEN(result, check_if_there(log, scene, orl_scene_mask_path(log, scene, i), &masked));
-    return result;
+    ORL_TRY(check_if_there(log, scene, orl_scene_photo_path(scene, i), &there));
+    if (!there)
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
+                        scene->dir, photo->name);
+    ORL_TRY(check_if_there(log, scene, orl_scene_linear_path(scene, i), &linear));
+    photo->linear = linear && !shows_time_step(scene);
+    return check_if_there(log, scene, orl_scene_mask_path(scene, i), &masked);
 }
 
 static enum orl_result check_photo_files(const struct orl_log *log, struct orl_scene *scene)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
-        result = check_photo(log, scene, i);
+    for (size_t i = 0; i < scene->photo_count; i++)
+        ORL_TRY(check_photo(log, scene, i));
     bool mesh;
-    return result == ORL_OK ? check_if_there(log, scene, orl_scene_mesh_path(log, scene), &mesh)
-                            : result;
+    return check_if_there(log, scene, orl_scene_mesh_path(scene), &mesh);
 }
 
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene, int frame)
@@ -460,50 +452,55 @@ static const char *time_steps_of(const struct orl_scene *scene)
 }
 
 // The path "SCENE/" or "SCENE/frames/<number>/", followed by folder, name and ending.
-static char *time_step_path(const struct orl_log *log, const struct orl_scene *scene,
-                            const char *folder, size_t photo, const char *ending)
+static struct orl_file_path time_step_path(const struct orl_scene *scene, const char *folder, size_t photo,
+                                      const char *ending)
 {
+    struct orl_file_path path;
     char frame[32] = "";
     if (shows_time_step(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
-    return orl_format(log, "%s/%s%s/%s%s", *frame ? time_steps_of(scene) : scene->dir, frame, folder,
-                      scene->photos[photo].name, ending);
+    orl_path_print(path.text, *frame ? time_steps_of(scene) : scene->dir, "%s%s/%s%s", frame, folder,
+                   scene->photos[photo].name, ending);
+    return path;
 }
 
-char *orl_scene_photo_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+struct orl_file_path orl_scene_photo_path(const struct orl_scene *scene, size_t photo)
 {
-    return time_step_path(log, scene, "images", photo, "");
+    return time_step_path(scene, "images", photo, "");
 }
 
-char *orl_scene_mask_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+struct orl_file_path orl_scene_mask_path(const struct orl_scene *scene, size_t photo)
 {
-    return time_step_path(log, scene, "masks", photo, ".png");
+    return time_step_path(scene, "masks", photo, ".png");
 }
 
-char *orl_scene_occluders_path(const struct orl_log *log, const struct orl_scene *scene,
-                               size_t photo)
+struct orl_file_path orl_scene_occluders_path(const struct orl_scene *scene, size_t photo)
 {
-    return orl_format(log, "%s/occluders/%s.png", scene->dir, scene->photos[photo].name);
+    struct orl_file_path path;
+    orl_path_print(path.text, scene->dir, "occluders/%s.png", scene->photos[photo].name);
+    return path;
 }
 
-char *orl_scene_background_path(const struct orl_log *log, const struct orl_scene *scene,
-                                size_t photo)
+struct orl_file_path orl_scene_background_path(const struct orl_scene *scene, size_t photo)
 {
-    return orl_format(log, "%s/background/%s.png", scene->dir, scene->photos[photo].name);
+    struct orl_file_path path;
+    orl_path_print(path.text, scene->dir, "background/%s.png", scene->photos[photo].name);
+    return path;
 }
 
-char *orl_scene_mesh_path(const struct orl_log *log, const struct orl_scene *scene)
+struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
 {
-    if (shows_time_step(scene)) {
-        char *path = orl_format(log, "%s/frames/%05d/mesh.ply", time_steps_of(scene), scene->frame);
-        if (!path || orl_path_is_file(path))
-            return path;
-        free(path);
-    }
-    return orl_path_join(log, scene->dir, "mesh.ply");
+    struct orl_file_path path;
+    if (shows_time_step(scene) &&
+        orl_path_is_file(orl_path_print(path.text, time_steps_of(scene), "frames/%05d/mesh.ply", scene->frame)))
+        return path;
+    orl_path_print(path.text, scene->dir, "mesh.ply");
+    return path;
 }
 
-char *orl_scene_linear_path(const struct orl_log *log, const struct orl_scene *scene, size_t photo)
+struct orl_file_path orl_scene_linear_path(const struct orl_scene *scene, size_t photo)
 {
-    return orl_format(log, "%s/images_linear/%s.exr", scene->dir, scene->photos[photo].name);
+    struct orl_file_path path;
+    orl_path_print(path.text, scene->dir, "images_linear/%s.exr", scene->photos[photo].name);
+    return path;
 }

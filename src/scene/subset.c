@@ -8,34 +8,29 @@
 #include "core/memory.h"
 #include "scene/colmap.h"
 
-// Copies a file of the scene to the same place in `dir`, if the file exists. Takes ownership of
-// `path`, which begins with the scene's folder.
+// Copies a file of the scene to the same place in `dir`, if the file exists. `path` begins with the
+// scene's folder.
 static enum orl_result copy_if_there(const struct orl_log *log, const struct orl_scene *scene,
-                                     char *path, const char *dir)
+                                     const char *path, const char *dir)
 {
-    ORL_TRY_MEMORY(path);
-    enum orl_result result = ORL_OK;
-    if (orl_path_is_file(path)) {
-        const char *inside = path + strlen(scene->dir);
-        result = orl_file_copy(log, path, ORL_PATH(dir, "%s", inside + strspn(inside, "/")));
-    }
-    free(path);
-    return result;
+    const char *inside = path + strlen(scene->dir);
+    return orl_path_is_file(path) ? orl_file_copy(log, path, ORL_PATH(dir, "%s", inside + strspn(inside, "/")))
+                                  : ORL_OK;
 }
 
 enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct orl_scene *scene,
                                       size_t photo, const char *dir)
 {
-    ORL_TRY(copy_if_there(log, scene, orl_scene_mask_path(log, scene, photo), dir));
-    ORL_TRY(copy_if_there(log, scene, orl_scene_background_path(log, scene, photo), dir));
-    return copy_if_there(log, scene, orl_scene_occluders_path(log, scene, photo), dir);
+    ORL_TRY(copy_if_there(log, scene, orl_scene_mask_path(scene, photo).text, dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_background_path(scene, photo).text, dir));
+    return copy_if_there(log, scene, orl_scene_occluders_path(scene, photo).text, dir);
 }
 
 enum orl_result orl_subset_copy_photo(const struct orl_log *log, const struct orl_scene *scene,
                                       size_t photo, const char *dir)
 {
-    ORL_TRY(copy_if_there(log, scene, orl_scene_photo_path(log, scene, photo), dir));
-    ORL_TRY(copy_if_there(log, scene, orl_scene_linear_path(log, scene, photo), dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_photo_path(scene, photo).text, dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_linear_path(scene, photo).text, dir));
     return orl_subset_copy_masks(log, scene, photo, dir);
 }
 
@@ -134,8 +129,8 @@ enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_sce
     if (scene->frame_count)
         return orl_fail(log, ORL_ERR_DATA, "%s: is a sequence", scene->dir);
     enum orl_result result = read_manifest(log, scene, manifest);
-    ORL_THEN(result, copy_if_there(log, scene, orl_path_join(log, scene->dir, "points.ply"), dir));
-    ORL_THEN(result, copy_if_there(log, scene, orl_scene_mesh_path(log, scene), dir));
+    ORL_THEN(result, copy_if_there(log, scene, ORL_PATH(scene->dir, "points.ply"), dir));
+    ORL_THEN(result, copy_if_there(log, scene, orl_scene_mesh_path(scene).text, dir));
     ORL_THEN(result, orl_subset_write_model(log, scene, keep, dir));
     if (result == ORL_OK) {
         orl_subset_keep_photographs(scene, keep, *manifest);

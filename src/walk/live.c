@@ -166,18 +166,17 @@ static enum orl_result add_camera(struct live *live, const char *dir, size_t pho
     const struct orl_photo *p = &live->scene->photos[photo];
     struct camera *camera = &live->cameras[live->camera_count++];
     struct orl_image picture = {0};
-    char *path = orl_scene_background_path(live->log, live->scene, photo);
+    const struct orl_file_path path = orl_scene_background_path(live->scene, photo);
     *camera = (struct camera){.photo = photo};
     camera->from = orl_format(live->log, "%s/%.*s", dir, (int)orl_path_stem(p->name), p->name);
-    enum orl_result result = path && camera->from ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && (!p->masked || !orl_path_is_file(path)))
-        result = orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
-                          "place, which --live needs; import the cameras with --background",
-                          live->scene->dir, p->name);
-    ORL_THEN(result, orl_picture_read(live->log, path, 3, &picture));
-    ORL_THEN(result, orl_background_add(live->log, &camera->background, &picture));
+    ORL_TRY_MEMORY(camera->from);
+    if (!p->masked || !orl_path_is_file(path.text))
+        return orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
+                        "place, which --live needs; import the cameras with --background",
+                        live->scene->dir, p->name);
+    ORL_TRY(orl_picture_read(live->log, path.text, 3, &picture));
+    enum orl_result result = orl_background_add(live->log, &camera->background, &picture);
     orl_image_finish(&picture);
-    free(path);
     return result;
 }
 

@@ -175,11 +175,10 @@ static enum orl_result wall_of(const struct site *site, size_t photo, size_t mos
     const struct orl_view *view = &site->scene->photos[photo].view;
     const struct orl_camera *c = &view->camera;
     struct orl_image picture = {0}, mask = {0};
-    char *path = orl_scene_background_path(log, site->scene, photo);
-    bool empty = path && orl_path_is_file(path);
-    enum orl_result result = empty ? orl_picture_read(log, path, 3, &picture)
+    const struct orl_file_path path = orl_scene_background_path(site->scene, photo);
+    bool empty = orl_path_is_file(path.text);
+    enum orl_result result = empty ? orl_picture_read(log, path.text, 3, &picture)
                                    : orl_photo_read(log, site->scene, photo, false, &picture);
-    free(path);
     if (result == ORL_OK && !empty && site->scene->photos[photo].masked)
         result = orl_photo_mask_read(log, site->scene, photo, &mask);
     int step = 1 + (int)sqrt((double)c->width * c->height / (double)most);

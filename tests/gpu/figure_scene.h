@@ -9,7 +9,7 @@
 static inline void mask_photo(struct fixture *f, struct orl_image *mask)
 {
     size_t last = f->scene.photo_count - 1;
-    char *path = orl_scene_mask_path(NULL, &f->scene, last);
+    char *path = strdup(orl_scene_mask_path(&f->scene, last).text);
     char *masks = orl_path_join(NULL, f->dir, "masks");
     assert_int_equal(orl_dir_make(NULL, masks), ORL_OK);
     assert_int_equal(orl_png_write(NULL, path, mask), ORL_OK);

@@ -318,12 +318,12 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
 static void move_to_folder(struct fixture *f)
 {
     for (size_t i = 0; i < f->scene.photo_count; i++) {
-        char *from = orl_scene_photo_path(NULL, &f->scene, i);
+        char *from = strdup(orl_scene_photo_path(&f->scene, i).text);
         char *name = orl_format(NULL, "side/%s", f->photos[i].name);
         free(f->photos[i].name);
         f->photos[i].name = name;
-        char *to = orl_scene_photo_path(NULL, &f->scene, i);
-        char *background = orl_scene_background_path(NULL, &f->scene, i);
+        char *to = strdup(orl_scene_photo_path(&f->scene, i).text);
+        char *background = strdup(orl_scene_background_path(&f->scene, i).text);
         assert_int_equal(orl_file_copy(NULL, from, to), ORL_OK);
         assert_int_equal(orl_file_copy(NULL, from, background), ORL_OK);
         free(from);
@@ -340,8 +340,8 @@ static void check_files(const struct orl_scene *whole, const struct orl_scene *s
     both.dir = small->dir;
     for (size_t i = 0; i < whole->photo_count; i++) {
         bool kept = orl_scene_find_photo(small, whole->photos[i].name) >= 0;
-        char *photo = orl_scene_photo_path(NULL, &both, i);
-        char *background = orl_scene_background_path(NULL, &both, i);
+        char *photo = strdup(orl_scene_photo_path(&both, i).text);
+        char *background = strdup(orl_scene_background_path(&both, i).text);
         assert_true(orl_path_is_file(photo) == kept);
         assert_true(orl_path_is_file(background) == kept);
         free(photo);

@@ -1,7 +1,5 @@
 #include "render/photos/occluders.h"
 
-#include <stdlib.h>
-
 #include "io/picture.h"
 #include "shared/render_blocks.h"
 
@@ -16,10 +14,7 @@ enum orl_result orl_occluders_read(const struct orl_log *log, const struct orl_s
     bool time_step = scene->frame_count > 0 && scene->frame >= 0;
     if (!(scene->photos[photo].occluded > 0) || time_step)
         return ORL_OK;
-    char *path = orl_scene_occluders_path(log, scene, photo);
-    enum orl_result result = path ? orl_picture_read(log, path, 1, mask) : ORL_ERR_MEMORY;
-    free(path);
-    return result;
+    return orl_picture_read(log, orl_scene_occluders_path(scene, photo).text, 1, mask);
 }
 
 static void put(const struct frame *frame, size_t photo, const int kept[2], struct orl_tex *mask)

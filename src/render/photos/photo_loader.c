@@ -16,17 +16,13 @@ enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene
     const struct orl_photo *photo = &scene->photos[index];
     const struct orl_camera *c = &photo->view.camera;
     linear = linear && photo->linear;
-    char *path = linear ? orl_scene_linear_path(log, scene, index)
-                        : orl_scene_photo_path(log, scene, index);
-    enum orl_result result = !path   ? ORL_ERR_MEMORY
-                             : linear ? orl_picture_read_linear(log, path, image)
-                                      : orl_picture_read(log, path, 3, image);
-    if (result == ORL_OK && (image->width != c->width || image->height != c->height)) {
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path,
-                          image->width, image->height, c->width, c->height);
-        orl_image_finish(image);
-    }
-    free(path);
+    const struct orl_file_path path = linear ? orl_scene_linear_path(scene, index) : orl_scene_photo_path(scene, index);
+    ORL_TRY(linear ? orl_picture_read_linear(log, path.text, image) : orl_picture_read(log, path.text, 3, image));
+    if (image->width == c->width && image->height == c->height)
+        return ORL_OK;
+    enum orl_result result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path.text,
+                                      image->width, image->height, c->width, c->height);
+    orl_image_finish(image);
     return result;
 }
 

@@ -562,13 +562,8 @@ bool orl_photos_backgrounds(const struct photos *photos)
 {
     const struct orl_scene *scene = photos->scene;
     bool all = !photos->radiance;
-    for (size_t i = 0; all && i < scene->photo_count; i++) {
-        if (!photos->states[i].usable)
-            continue;
-        char *path = orl_scene_background_path(NULL, scene, i);
-        all = path && orl_path_is_file(path);
-        free(path);
-    }
+    for (size_t i = 0; all && i < scene->photo_count; i++)
+        all = !photos->states[i].usable || orl_path_is_file(orl_scene_background_path(scene, i).text);
     return all;
 }
 
@@ -590,8 +585,8 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     give_slot(photos, state);
     if (orl_photos_has_background(photos, photo))
         return ORL_OK;
-    char *path = orl_scene_background_path(log, photos->scene, photo);
-    enum orl_result result = path ? orl_picture_read(log, path, 3, &whole) : ORL_ERR_MEMORY;
+    enum orl_result result =
+        orl_picture_read(log, orl_scene_background_path(photos->scene, photo).text, 3, &whole);
     if (result == ORL_OK && !photos->background_of)
         photos->background_of =
             orl_array(log, (size_t)photos->slot_count, sizeof *photos->background_of);
@@ -607,7 +602,6 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     }
     orl_image_finish(&whole);
     orl_image_finish(&image);
-    free(path);
     return result;
 }
 
@@ -617,14 +611,13 @@ enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_
                                     size_t photo, struct orl_image *mask)
 {
     const struct orl_camera *c = &scene->photos[photo].view.camera;
-    char *path = orl_scene_mask_path(log, scene, photo);
-    enum orl_result result = path ? orl_picture_read(log, path, 1, mask) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && (mask->width != c->width || mask->height != c->height)) {
-        result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its photograph has %dx%d",
-                          path, mask->width, mask->height, c->width, c->height);
-        orl_image_finish(mask);
-    }
-    free(path);
+    const struct orl_file_path path = orl_scene_mask_path(scene, photo);
+    ORL_TRY(orl_picture_read(log, path.text, 1, mask));
+    if (mask->width == c->width && mask->height == c->height)
+        return ORL_OK;
+    enum orl_result result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its photograph has %dx%d",
+                                      path.text, mask->width, mask->height, c->width, c->height);
+    orl_image_finish(mask);
     return result;
 }
 

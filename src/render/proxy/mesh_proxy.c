@@ -80,17 +80,14 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
                             struct mesh_state *state)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    char *path = orl_scene_mesh_path(log, scene);
-    enum orl_result result = path ? ORL_OK : ORL_ERR_MEMORY;
+    const struct orl_file_path path = orl_scene_mesh_path(scene);
     orl_mesh_state_finish(gpu, state);
     state->time_step = scene->frame;
-    if (result == ORL_OK && !orl_path_is_file(path))
-        result = orl_fail(log, ORL_ERR_NOT_FOUND,
-                          "%s: not there; --mesh of oriel prepare or oriel import makes one", path);
-    ORL_THEN(result, orl_mesh_read(log, path, &state->mesh));
-    ORL_THEN(result, orl_mesh_state_upload(gpu, state));
-    free(path);
-    return result;
+    if (!orl_path_is_file(path.text))
+        return orl_fail(log, ORL_ERR_NOT_FOUND,
+                        "%s: not there; --mesh of oriel prepare or oriel import makes one", path.text);
+    ORL_TRY(orl_mesh_read(log, path.text, &state->mesh));
+    return orl_mesh_state_upload(gpu, state);
 }
 
 static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
