@@ -193,8 +193,11 @@ enum orl_result orl_flush(const struct orl_log *log, const char *path)
         return ORL_OK;
     struct orl_names names;
     enum orl_result result = orl_dir_list(log, path, &names);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++)
-        result = orl_flush(log, ORL_PATH(path, "%s", names.items[i]));
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *child = orl_path_join(log, path, names.items[i]);
+        result = child ? orl_flush(log, child) : ORL_ERR_MEMORY;
+        free(child);
+    }
     orl_names_finish(&names);
     return result;
 }

@@ -283,8 +283,11 @@ enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
     if (S_ISDIR(st.st_mode)) {
         struct orl_names names;
         enum orl_result result = orl_dir_list(log, path, &names);
-        for (size_t i = 0; result == ORL_OK && i < names.count; i++)
-            result = orl_dir_remove(log, ORL_PATH(path, "%s", names.items[i]));
+        for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+            char *child = orl_path_join(log, path, names.items[i]);
+            result = child ? orl_dir_remove(log, child) : ORL_ERR_MEMORY;
+            free(child);
+        }
         orl_names_finish(&names);
         if (result != ORL_OK)
             return result;

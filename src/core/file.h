@@ -9,7 +9,7 @@
 
 // ORL_PATH(DIR, FORMAT, ...): the path "DIR/<name>" of a printed name, or the name alone when DIR is "". It lives in the
 // enclosing block (a branch or a loop's body without braces is a block, too) and nobody releases it. What is too long is
-// cut as in struct orl_file_path.
+// cut as in struct orl_file_path. Functions that call themselves for a folder in a folder keep paths on the heap.
 #define ORL_PATH(...) orl_path_print((char[ORL_PATH_SIZE]){""}, __VA_ARGS__)
 const char *orl_path_print(char path[ORL_PATH_SIZE], const char *dir, const char *format, ...) ORL_PRINTF(3, 4);
 // "dir/name", released with free(); NULL, logged, when memory runs out.

@@ -72,18 +72,27 @@ static enum orl_result copy(const struct writer *w, const char *from, const char
 // Copies SCENE/name, a file or a folder, without what belongs to photographs that are left out.
 static enum orl_result copy_tree(const struct writer *w, const char *name)
 {
-    struct orl_names names;
-    const char *from = ORL_PATH(w->source->scene->dir, "%s", name);
-    if (!orl_path_is_dir(from))
-        return orl_path_is_file(from) ? copy(w, from, name) : ORL_OK;
-    ORL_TRY(orl_dir_make(w->log, ORL_PATH(w->out, "%s", name)));
-    enum orl_result result = orl_dir_list(w->log, from, &names);
+    struct orl_names names = {0};
+    char *from = orl_path_join(w->log, w->source->scene->dir, name);
+    char *to = orl_path_join(w->log, w->out, name);
+    enum orl_result result = from && to ? ORL_OK : ORL_ERR_MEMORY;
+    bool folder = result == ORL_OK && orl_path_is_dir(from);
+    if (result == ORL_OK && !folder && orl_path_is_file(from))
+        result = copy(w, from, name);
+    if (folder)
+        result = orl_dir_make(w->log, to);
+    if (folder && result == ORL_OK)
+        result = orl_dir_list(w->log, from, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        const char *inner = ORL_PATH(name, "%s", names.items[i]);
-        if (!is_left_out(w, inner))
+        char *inner = orl_path_join(w->log, name, names.items[i]);
+        result = inner ? ORL_OK : ORL_ERR_MEMORY;
+        if (inner && !is_left_out(w, inner))
             result = copy_tree(w, inner);
+        free(inner);
     }
     orl_names_finish(&names);
+    free(from);
+    free(to);
     return result;
 }
 

@@ -264,16 +264,22 @@ static enum orl_result list_files(const struct orl_log *log, const char *dir, co
                                   bool data, struct orl_names *paths)
 {
     struct orl_names names = {0};
-    enum orl_result result = ORL_OK;
-    ORL_TRY(orl_dir_list(log, ORL_PATH(dir, "%s", folder), &names));
+    char *here = orl_path_join(log, dir, folder);
+    enum orl_result result = here ? orl_dir_list(log, here, &names) : ORL_ERR_MEMORY;
     for (size_t i = 0; i < names.count && result == ORL_OK; i++) {
-        const char *path = ORL_PATH(folder, "%s", names.items[i]);
-        if (orl_path_is_dir(ORL_PATH(dir, "%s", path)))
+        char *path = orl_format(log, "%s%s%s", folder, *folder ? "/" : "", names.items[i]);
+        char *full = path ? orl_path_join(log, dir, path) : NULL;
+        if (!full)
+            result = ORL_ERR_MEMORY;
+        else if (orl_path_is_dir(full))
             result = list_files(log, dir, path, data, paths);
         else if (!data || is_data(path))
             result = orl_names_add(log, paths, path);
+        free(full);
+        free(path);
     }
     orl_names_finish(&names);
+    free(here);
     return result;
 }
 

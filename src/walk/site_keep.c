@@ -106,19 +106,24 @@ static enum orl_result keep_folder(const struct keeping *k, const char *path, co
 static enum orl_result keep(const struct keeping *k, const char *path)
 {
     struct stat st, there;
-    const char *from = ORL_PATH(k->old, "%s", path), *to = ORL_PATH(k->new, "%s", path);
-    if (lstat(from, &st) != 0)
-        return orl_fail(k->log, ORL_ERR_IO, "%s: %s", from, strerror(errno));
-    if (is_listed(k, path))
-        return ORL_OK;
+    char *from = orl_path_join(k->log, k->old, path), *to = orl_path_join(k->log, k->new, path);
+    enum orl_result result = from && to ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && lstat(from, &st) != 0)
+        result = orl_fail(k->log, ORL_ERR_IO, "%s: %s", from, strerror(errno));
+    if (result != ORL_OK || is_listed(k, path))
+        goto end;
     bool taken = lstat(to, &there) == 0;
     if (S_ISDIR(st.st_mode) && (!taken || S_ISDIR(there.st_mode)))
-        return keep_folder(k, path, from, to, &st);
-    if (taken)
-        return k->knows ? orl_fail(k->log, ORL_ERR_ARGUMENT, "%s: was not written by Oriel, and the new site "
-                                   "has something of this name: move it elsewhere", from) : ORL_OK;
-    ORL_TRY(orl_file_make_folder(k->log, to));
-    return keep_file(k, from, to, &st);
+        result = keep_folder(k, path, from, to, &st);
+    else if (taken && k->knows)
+        result = orl_fail(k->log, ORL_ERR_ARGUMENT, "%s: was not written by Oriel, and the new site "
+                          "has something of this name: move it elsewhere", from);
+    else if (!taken && (result = orl_file_make_folder(k->log, to)) == ORL_OK)
+        result = keep_file(k, from, to, &st);
+end:
+    free(from);
+    free(to);
+    return result;
 }
 
 enum orl_result orl_site_keep(const struct site *site, const char *old)

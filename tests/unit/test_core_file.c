@@ -42,6 +42,24 @@ static void paths(void **state)
     assert_false(orl_path_is_file("/nowhere/at/all"));
 }
 
+// As deep as a path can tell: each level may take little of the stack.
+static void deep_folders_are_flushed_and_removed(void **state)
+{
+    (void)state;
+    enum { LEVELS = 1900 };
+    char path[ORL_PATH_SIZE];
+    size_t length = strlen(orl_path_print(path, dir, "deep"));
+    for (int i = 0; i < LEVELS; i++) {
+        assert_int_equal(mkdir(path, 0777), 0);
+        memcpy(path + length, "/a", 3);
+        length += 2;
+    }
+    const char *deep = ORL_PATH(dir, "deep");
+    assert_int_equal(orl_flush(NULL, deep), ORL_OK);
+    assert_int_equal(orl_dir_remove(NULL, deep), ORL_OK);
+    assert_false(orl_path_is_dir(deep));
+}
+
 // All slashes: a shorter cut would be the root folder.
 static void long_paths_open_nothing(void **state)
 {
@@ -292,6 +310,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths),
         cmocka_unit_test(long_paths_open_nothing),
+        cmocka_unit_test(deep_folders_are_flushed_and_removed),
         cmocka_unit_test(names_without_extension),
         cmocka_unit_test(lines_of_a_text),
         cmocka_unit_test(temporary_folders),
