@@ -455,7 +455,7 @@ static const char *time_steps_of(const struct orl_scene *scene)
 static struct orl_file_path time_step_path(const struct orl_scene *scene, const char *folder, size_t photo,
                                       const char *ending)
 {
-    struct orl_file_path path;
+    struct orl_file_path path = {""};
     char frame[32] = "";
     if (shows_time_step(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
@@ -476,21 +476,21 @@ struct orl_file_path orl_scene_mask_path(const struct orl_scene *scene, size_t p
 
 struct orl_file_path orl_scene_occluders_path(const struct orl_scene *scene, size_t photo)
 {
-    struct orl_file_path path;
+    struct orl_file_path path = {""};
     orl_path_print(path.text, scene->dir, "occluders/%s.png", scene->photos[photo].name);
     return path;
 }
 
 struct orl_file_path orl_scene_background_path(const struct orl_scene *scene, size_t photo)
 {
-    struct orl_file_path path;
+    struct orl_file_path path = {""};
     orl_path_print(path.text, scene->dir, "background/%s.png", scene->photos[photo].name);
     return path;
 }
 
 struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
 {
-    struct orl_file_path path;
+    struct orl_file_path path = {""};
     if (shows_time_step(scene) &&
         orl_path_is_file(orl_path_print(path.text, time_steps_of(scene), "frames/%05d/mesh.ply", scene->frame)))
         return path;
@@ -500,7 +500,7 @@ struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
 
 struct orl_file_path orl_scene_linear_path(const struct orl_scene *scene, size_t photo)
 {
-    struct orl_file_path path;
+    struct orl_file_path path = {""};
     orl_path_print(path.text, scene->dir, "images_linear/%s.exr", scene->photos[photo].name);
     return path;
 }
