@@ -144,8 +144,8 @@ page_scenes() {
     head_of "Scenes of the measurements" "$(list $(scene_names))"
     cat <<'END'
 
-Every figure of these pages is of one of these scenes. `measured.sh` prepares those that are missing; its function
-`scene_list` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
+Every figure of these pages is of one of these scenes, or of one prepared with the same arguments at the size that its
+page names. `measured.sh` prepares those that are missing; its function `scene_list` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
 photographs. *Held out* photographs take part in calibration alone. *Spread* is the robust standard deviation of what
 photographs show of one point, in stops, before and after their exposures are brought together.
 

@@ -406,7 +406,7 @@ static void reads_whether_a_hull_closed_the_points(void **state)
 {
     (void)state;
     char *dir = whole(), text[2048];
-    static const char *const told[] = {"{}", "{\"fuse\": {}}", "{\"fuse\": {\"hull\": {\"silhouettes\": 14}}}"};
+    static const char *const told[] = {"{}", "{\"fuse\": {\"hull\": null}}", "{\"fuse\": {\"hull\": {\"silhouettes\": 14}}}"};
     struct orl_scene *scene;
     for (size_t i = 0; i < ORL_COUNT(told); i++) {
         snprintf(text, sizeof text, "%.*s, \"stages\": %s}", (int)(strrchr(manifest, '}') - manifest), manifest, told[i]);
