@@ -4,7 +4,6 @@
 #include <stdio.h>
 
 #include "core/file.h"
-#include "core/json.h"
 #include "core/process.h"
 #include "eval/refine.h"
 #include "preprocess/drawing.h"
@@ -46,15 +45,10 @@ static enum orl_result begin(struct orl_job *job)
     return orl_stages_begin(job, orl_time_s() - start);
 }
 
-// True once oriel refine has finished with this scene: it keeps in scene.json how much of the splats pictures take, and
-// stages that are done again remove that.
+// True once oriel refine has finished with this scene. Stages that are done again remove its splats.
 static bool is_refined(const struct orl_job *job)
 {
-    json_t *root = NULL;
-    bool kept = orl_json_read(job->log, ORL_PATH(job->dir, "scene.json"), &root) == ORL_OK &&
-                json_object_size(json_object_get(root, "tuned")) > 0;
-    json_decref(root);
-    return kept && orl_job_has(job, ORL_SOFT_NAME) && !orl_job_has(job, ORL_REFINE_STATE_NAME);
+    return orl_job_has(job, ORL_SOFT_NAME) && !orl_job_has(job, ORL_REFINE_STATE_NAME);
 }
 
 // What oriel refine does, for the scene that has been made.

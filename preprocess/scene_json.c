@@ -174,16 +174,18 @@ static json_t *make_manifest(const struct orl_job *job)
 {
     const json_t *plan = json_object_get(job->stages, "plan");
     const json_t *done = json_object_get(job->stages, "done");
+    json_t *tuned = stage_value(done, "tune", "tuned");
     json_t *photos = list_photos(job, stage_value(done, "expose", "photographs"),
                                  stage_value(done, "occluders", "occluded"));
-    return json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O}",
+    return json_pack("{s:s, s:i, s:s, s:o, s:o, s:o, s:O*, s:o, s:o, s:o, s:O, s:O*, s:O*}",
                      "format", "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by",
                      "oriel " ORL_VERSION, "settings", settings(job->params), "counts",
                      counts(job, done, photos), "photographs", photos, "responses",
                      stage_value(done, "expose", "responses"), "left_out", left_out(job, done),
                      "stages", copy_stages(plan, done), "checksums", checksums(plan, done),
                      "ground", stage_value(done, "ground", "ground"), "backdrop",
-                     stage_value(done, "backdrop", "backdrop"));
+                     stage_value(done, "tune", "backdrop"), "tuned",
+                     json_object_size(tuned) ? tuned : NULL);
 }
 
 enum orl_result orl_scene_json_open(struct orl_job *job, struct orl_scene **scene)

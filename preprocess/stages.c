@@ -15,7 +15,6 @@
 #include "preprocess/calibrate/calibrate.h"
 #include "preprocess/calibrate/undistort.h"
 #include "preprocess/cloud/fuse.h"
-#include "preprocess/cloud/backdrop.h"
 #include "preprocess/cloud/ground.h"
 #include "preprocess/cloud/mesh_stage.h"
 #include "preprocess/cloud/radii.h"
@@ -26,6 +25,7 @@
 #include "preprocess/photos/collect.h"
 #include "preprocess/photos/normalise.h"
 #include "preprocess/results.h"
+#include "preprocess/tune_stage.h"
 #include "scene/manifest.h"
 #include "scene/point_lod.h"
 
@@ -131,13 +131,13 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                          {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
     [ORL_STAGE_GROUND] = {"ground", 3, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
                           "ground", true, NULL},
-    [ORL_STAGE_BACKDROP] = {"backdrop", 1, ORL_STAGE_RADII, NULL, orl_stage_backdrop, {0},
-                            "backdrop", true, NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, test_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 4, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
-    [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_EXPOSE, occluders_settings,
+    [ORL_STAGE_TUNE] = {"tune", 1, ORL_STAGE_EXPOSE, NULL, orl_stage_tune, {0}, "tuned", true,
+                        NULL},
+    [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_TUNE, occluders_settings,
                              orl_stage_occluders, {"occluders"}, "occluded", true,
                              are_occluders_wanted},
 };
@@ -314,7 +314,7 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
     return ORL_OK;
 }
 
-// Before a stage changes any file, scene.json goes, which makes the folder a scene, and so do the
+// Before a stage changes any file, scene.json goes, which makes the folder a scene, and so do its soft splats and the
 // records of the stage and of all later stages that depend on it.
 static enum orl_result invalidate(const struct orl_job *job, const bool *current)
 {
@@ -328,6 +328,7 @@ static enum orl_result invalidate(const struct orl_job *job, const bool *current
     if (all)
         return ORL_OK;
     enum orl_result result = orl_job_remove(job, "scene.json");
+    ORL_THEN(result, orl_job_remove(job, ORL_SOFT_NAME)); // scene.json said how much of it pictures take
     if (result == ORL_OK && changed)
         orl_logf(job->log, ORL_LOG_INFO,
                  "photographs or settings have changed: some stages are done again");

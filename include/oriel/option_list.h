@@ -89,8 +89,7 @@
         "differ. They are blurred as far. With 0 they are not.") \
     NUMBER(guess_depths, 0, 0, 32, "depths", "paint=tiled", ORL_TRIES(0, 16), \
         "How many depths are tried where only a guessed depth is known, from the guess to " \
-        "infinity. The guess moves to where photographs do not see past it. With 0 it stays. A scene " \
-        "without a hull of silhouettes has 0 unless told otherwise.") \
+        "infinity. The guess moves to where photographs do not see past it. With 0 it stays.") \
     NUMBER(soft, 0, 0, 1, "share", "paint=tiled", ORL_NO_TRIES, \
         "How far the scene's soft splats (`oriel refine`) correct structure that photographs have in the " \
         "wrong place. They mend what stereo cannot see, and `oriel refine` finds a good share.") \

@@ -89,7 +89,6 @@ struct orl_scene {
     struct orl_ground ground;
     bool backdrop_rests; // what lies behind the points stays where it is in photographs, as behind a
                          // turntable
-    bool has_hull; // the hull of silhouettes closed the points: the subject stands before masks or a dark backdrop
     struct orl_room room;
     double origin[3]; // coordinates of the imported file minus this are those of the scene
 };

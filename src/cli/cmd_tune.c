@@ -14,7 +14,7 @@
     ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
         "start no trial after so long; default: none") \
     ROW(views, "views", INT(16, 1, 100000, "N"), "photographs to compare with, at most") \
-    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
+    ROW(size_divide, "size-divide", INT(1, 1, ORL_SEARCH_DIVIDE_MAX, "N"), "compare at 1/N of their size") \
     ROW(gain_db, "gain", NUMBER(0.01, 0, 10, "DB"), "a change must bring so much") \
     ROW(json, "json", TEXT("FILE"), "write result and trials as JSON") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")

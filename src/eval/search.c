@@ -18,7 +18,7 @@ static enum orl_result begin(struct orl_gpu *gpu, struct orl_renderer *renderer,
 {
     *s = (struct orl_search){.log = orl_gpu_log(gpu), .renderer = renderer, .scene = scene,
                              .params = *params, .start_s = orl_time_s(), .complete = true};
-    ORL_REQUIRE(s->log, params->size_divide >= 1 && params->size_divide <= 16);
+    ORL_REQUIRE(s->log, params->size_divide >= 1 && params->size_divide <= ORL_SEARCH_DIVIDE_MAX);
     return orl_validation_load(s->log, scene, params->views, params->size_divide, &s->validation);
 }
 
@@ -179,6 +179,26 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
         orl_progress_report(params->progress, "search", 1, 1, NULL);
     else
         orl_search_finish(s);
+    return result;
+}
+
+// --- the backdrop ---
+
+enum orl_result orl_search_backdrop(const struct orl_log *log, struct orl_renderer *renderer, struct orl_scene *scene,
+                                    const struct orl_search_params *params, const struct orl_choice *choice)
+{
+    struct orl_validation validation = {0};
+    struct orl_score scores[2] = {{0}};
+    enum orl_result result = orl_validation_load(log, scene, params->views, params->size_divide, &validation);
+    for (int rests = 0; rests < 2; rests++) {
+        scene->backdrop_rests = rests;
+        ORL_THEN(result, orl_score_measure(log, renderer, &validation, &choice->params, params->progress,
+                                           &scores[rests]));
+    }
+    scene->backdrop_rests = result == ORL_OK && orl_score_better(&scores[1], &scores[0], params->gain_db);
+    orl_score_finish(&scores[0]);
+    orl_score_finish(&scores[1]);
+    orl_validation_finish(&validation);
     return result;
 }
 

@@ -10,6 +10,8 @@
 #include "eval/score.h"
 #include "oriel/progress.h"
 
+enum { ORL_SEARCH_DIVIDE_MAX = 16 };
+
 // One measured choice.
 struct orl_trial {
     const struct orl_method *method;
@@ -20,7 +22,7 @@ struct orl_trial {
 };
 
 struct orl_search_params {
-    int size_divide;   // pictures have 1/n of the photographs' size, [1, 16]
+    int size_divide;   // pictures have 1/n of the photographs' size, [1, ORL_SEARCH_DIVIDE_MAX]
     size_t views;      // greatest number of photographs to compare with, evenly chosen; 0: all
     double gain_db;    // a change is kept when it is better by at least this much (score.h)
     double budget_s;   // no new trial starts after this time; 0: no limit. With a limit, the result
@@ -53,6 +55,12 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
                                const struct orl_choice *start, const struct orl_names *keys,
                                struct orl_search *search) ORL_CHECK_RESULT;
 void orl_search_finish(struct orl_search *search);
+
+// Sets scene->backdrop_rests, of the renderer's scene: whether pictures come closer by params->gain_db when what lies
+// behind the points stays at its place in the photographs, as behind a turntable. Errors are those of orl_search_run.
+enum orl_result orl_search_backdrop(const struct orl_log *log, struct orl_renderer *renderer, struct orl_scene *scene,
+                                    const struct orl_search_params *params,
+                                    const struct orl_choice *choice) ORL_CHECK_RESULT;
 
 // What was found as the record that scene.json has under "tuned". A new reference; NULL: no memory.
 json_t *orl_search_record(const struct orl_search *search);

@@ -164,7 +164,7 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     memset(trim, 0, sizeof *trim);
-    ORL_REQUIRE(log, params->size_divide >= 1 && params->size_divide <= 16);
+    ORL_REQUIRE(log, params->size_divide >= 1 && params->size_divide <= ORL_SEARCH_DIVIDE_MAX);
     ORL_REQUIRE(log, params->out && *params->out);
     if (scene->lod)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: trim needs all points in memory, and they "

@@ -202,9 +202,6 @@ static void suit_scene(const struct orl_scene *scene, struct orl_render_params *
     // Voxels of points have holes where a hull has none.
     if (kind == &orl_proxy_voxels && !has_silhouettes(scene))
         params->fill = ORL_FILL_COLOR;
-    // Before other backdrops, depths that are tried gain next to nothing.
-    if (!scene->has_hull)
-        params->guess_depths = 0;
 }
 
 bool orl_render_params_take_proxy(const struct orl_render_params *from,

@@ -302,8 +302,6 @@ enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, c
     ORL_TRY(orl_tuned_read(log, path, root, scene));
     ORL_TRY(read_ground(log, path, root, &scene->ground));
     ORL_TRY(read_backdrop(log, path, root, &scene->backdrop_rests));
-    const json_t *fuse = json_object_get(json_object_get(root, "stages"), "fuse");
-    scene->has_hull = json_is_object(json_object_get(fuse, "hull"));
     ORL_TRY(orl_manifest_read_room(log, path, root, &scene->room));
     return read_origin(log, path, root, scene->origin);
 }

@@ -90,6 +90,13 @@ if command -v colmap >/dev/null; then
         --test-list cam03 --out closed --verbose
     grep -q 'visual hull of 15 silhouettes (masks) closes surfaces by [1-9]' stderr.txt ||
         fail "silhouettes close nothing"
+    # What suits it is what oriel tune finds.
+    runs 0 "$oriel" tune closed --fresh --only sharpness,depth_tolerance,guess_depths --views 8 --size-divide 2 \
+        --gain 0.1 --json tuned.json
+    settled() { sed -n '/"settings"/,/"photographs"/p' | tr -d ' \n' | sed 's/.*"settings"/"settings"/'; }
+    [ "$(sed -n '/"tuned"/,$p' closed/scene.json | settled)" = "$(settled <tuned.json)" ] ||
+        fail "the stage tune found: $(sed -n '/"tuned"/,$p' closed/scene.json | settled)"
+    grep -q '"backdrop": "moves"' closed/scene.json || fail "nothing was found of the backdrop"
     # The cameras are those that were given, in the truth's own coordinates: a copy without
     # points has the same.
     runs 0 "$oriel" import photos-truth/cameras.json --images photos --test-list 0003 --out bare

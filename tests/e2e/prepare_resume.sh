@@ -203,7 +203,7 @@ says "remove this file"
 [ "$(md5sum <"$scene/scene.json")" = "$manifest" ] || fail "a scene was made of a bad value"
 sed 's/"sum": /"mus": /' "$work/before" >"$scene/.oriel/stages.json"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
-says "backdrop: done already"
+says "ground: done already"
 sed -i 's/^{$/&"tuned": {"points": {"settings": {"blend": [1]}}},/' "$scene/scene.json"
 run 2 info "$scene"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume
@@ -299,5 +299,7 @@ run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --refine
 says "radii: done already"
 says "refine: goes on after "
 [ "$(md5sum <"$scene/soft.ply")" = "$soft" ] || fail "a run that was killed makes other soft splats"
+run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --occluders none
+[ -e "$scene/soft.ply" ] && fail "soft splats stay, and nothing says how much of them pictures take"
 
 finish

@@ -1,7 +1,7 @@
 // A plate on a turntable before something that rests, and one that photographs walk around.
 #include <math.h>
 
-#include "preprocess/cloud/backdrop.h"
+#include "eval/search.h"
 #include "wall_scene.h"
 
 enum { SIDE = 128, SQUARE = 12, EYES = 7 };
@@ -73,14 +73,18 @@ static void set_up(struct fixture *f, bool rests, double apart)
     }
 }
 
-static bool found(bool rests, int photographs, double apart)
+static bool found(bool rests, double apart)
 {
     struct fixture f;
     set_up(&f, rests, apart);
-    for (int i = photographs; i < EYES; i++)
-        f.photos[i].test = true;
-    assert_int_equal(orl_backdrop_find(NULL, &f.scene), ORL_OK);
+    const struct orl_search_params search = {.size_divide = 1, .gain_db = 0.05};
+    struct orl_renderer *renderer = NULL;
+    struct orl_choice choice;
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    assert_int_equal(orl_choice_make(NULL, NULL, ORL_SAMPLE_SRGB, "oriel", &(struct orl_names){0}, &choice), ORL_OK);
+    assert_int_equal(orl_search_backdrop(NULL, renderer, &f.scene, &search, &choice), ORL_OK);
     bool found = f.scene.backdrop_rests;
+    orl_renderer_destroy(&renderer);
     teardown(&f);
     return found;
 }
@@ -88,11 +92,10 @@ static bool found(bool rests, int photographs, double apart)
 static void photographs_tell_whether_it_rests(void **state)
 {
     (void)state;
-    assert_true(found(true, EYES, 10));
-    assert_false(found(false, EYES, 10));
-    assert_false(found(true, 4, 10)); // too few to tell
+    assert_true(found(true, 10));
+    assert_false(found(false, 10));
     // From nearly one place, what is far away is at the same place of the picture, too.
-    assert_false(found(false, EYES, 0.1));
+    assert_false(found(false, 0.1));
 }
 
 // Mean absolute error of the picture beside the plate, in roots of light; *hole: the green of the

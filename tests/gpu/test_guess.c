@@ -59,6 +59,14 @@ static void make_wall(struct orl_points *points)
 // Photographs from four places, side by side.
 static const double around[4] = {-0.7, -0.4, 0.3, 0.6};
 
+// Options of oriel that try so many depths.
+static struct orl_render_params with_depths(float depths)
+{
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.guess_depths = depths;
+    return params;
+}
+
 // Mean absolute error of the picture in the middle columns of some rows, with the squares in the plane z.
 static double error_in_rows(const double eyes[4], float depths, double z, int first, int end)
 {
@@ -67,8 +75,7 @@ static double error_in_rows(const double eyes[4], float depths, double z, int fi
     make_wall(&f.scene.points);
     for (size_t i = 0; i < 4; i++)
         add_true_photo(&f, eyes[i], z);
-    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
-    params.guess_depths = depths;
+    struct orl_render_params params = with_depths(depths);
     params.guess_blur = 0;
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
     double sum = 0;
@@ -141,7 +148,7 @@ static void surfaces_keep_their_photographs(void **state)
     make_wall(&f.scene.points);
     add_photo(&f, look_from(1.5, 0, 0, 2 * SIDE, FOCAL), red);
     add_photo(&f, look_from(0.1, 0, 0, 2 * SIDE, FOCAL), green);
-    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    struct orl_render_params params = with_depths(16);
     struct orl_frame moved = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
     params.guess_depths = 0;
     struct orl_frame rim = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
@@ -172,7 +179,7 @@ static void guesses_change_without_a_line(void **state)
     for (int i = 0; i < 3 * WIDE * WIDE; i++)
         image.u8[i] = (uint8_t)(i / 3 % WIDE / 2);
     repaint_photo(&f, &image);
-    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    struct orl_render_params params = with_depths(16);
     params.guess_blur = 0;
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, VIEW, FOCAL), &params, 0);
     double most = 0;
@@ -216,7 +223,7 @@ static double error_beside_slanting_wall(bool normals)
         memset(&image.u8[3 * i], squares(eye + z * x, z * y), 3);
     }
     repaint_photo(&f, &image);
-    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    struct orl_render_params params = with_depths(16);
     params.guess_blur = 0;
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
     double sum = 0;
@@ -263,14 +270,12 @@ static void guesses_move_behind_what_photographs_see_past(void **state)
         memcpy(&image.u8[3 * i], plate ? green : wall ? red : blue, 3);
     }
     repaint_photo(&f, &image);
-    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     float seen[2][3];
     for (int moved = 0; moved < 2; moved++) {
-        params.guess_depths = moved ? params.guess_depths : 0;
+        const struct orl_render_params params = with_depths(moved ? 16 : 0);
         struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
         memcpy(seen[moved], color_at(&frame, AT, SIDE / 2), sizeof seen[moved]);
         orl_frame_finish(&frame);
-        params = orl_method_find(NULL, "oriel")->params;
     }
     teardown(&f);
     print_message("guess: red %.2f, blue %.2f; moved: red %.2f, blue %.2f\n", (double)seen[0][0],

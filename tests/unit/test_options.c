@@ -127,23 +127,6 @@ static void scenes_without_points_use_mesh_or_hull(void **state)
     assert_string_equal(orl_slot_name(params.proxy), "splats");
 }
 
-static void depths_are_tried_around_hulls(void **state)
-{
-    (void)state;
-    struct orl_scene scene = {.dir = (char *)"a scene", .points.count = 1};
-    struct orl_render_params params;
-    const struct orl_method *method = orl_method_find(NULL, "oriel");
-    orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_float_equal(params.guess_depths, 0, 0);
-    scene.has_hull = true;
-    orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_float_equal(params.guess_depths, 16, 0);
-    struct orl_tuned tuned = {(char *)"oriel", (char *)"guess_depths", 8, NULL};
-    scene = (struct orl_scene){.dir = scene.dir, .points.count = 1, .tuned = &tuned, .tuned_count = 1};
-    orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_float_equal(params.guess_depths, 8, 0);
-}
-
 // A variant takes what was found for its base, but not in what makes it a variant, and not if
 // something was found for itself.
 static void variants_take_the_settings_of_their_base(void **state)
@@ -221,7 +204,6 @@ int main(void)
         cmocka_unit_test(several_are_set_at_once),
         cmocka_unit_test(choices_must_go_together),
         cmocka_unit_test(scenes_without_points_use_mesh_or_hull),
-        cmocka_unit_test(depths_are_tried_around_hulls),
         cmocka_unit_test(scenes_settings_are_used),
         cmocka_unit_test(settings_that_do_not_fit_are_ignored),
         cmocka_unit_test(variants_take_the_settings_of_their_base),

@@ -402,24 +402,6 @@ static void reads_backdrop(void **state)
     test_dir_remove(dir);
 }
 
-static void reads_whether_a_hull_closed_the_points(void **state)
-{
-    (void)state;
-    char *dir = whole(), text[2048];
-    static const char *const told[] = {"{}", "{\"fuse\": {\"hull\": null}}", "{\"fuse\": {\"hull\": {\"silhouettes\": 14}}}"};
-    struct orl_scene *scene;
-    for (size_t i = 0; i < ORL_COUNT(told); i++) {
-        snprintf(text, sizeof text, "%.*s, \"stages\": %s}", (int)(strrchr(manifest, '}') - manifest), manifest, told[i]);
-        save(dir, "scene.json", text);
-        assert_int_equal(orl_scene_open(NULL, dir, &scene), ORL_OK);
-        assert_int_equal(scene->has_hull, i == 2);
-        orl_scene_destroy(&scene);
-    }
-    test_dir_remove(dir);
-}
-
-// A link to a place outside of the scene is refused wherever it stands; one that stays inside, or
-// that names the scene itself, is fine.
 static void links_out_of_the_scene_are_refused(void **state)
 {
     (void)state;
@@ -469,7 +451,6 @@ int main(void)
         cmocka_unit_test(reads_how_to_render),
         cmocka_unit_test(reads_ground),
         cmocka_unit_test(reads_backdrop),
-        cmocka_unit_test(reads_whether_a_hull_closed_the_points),
         cmocka_unit_test(links_out_of_the_scene_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

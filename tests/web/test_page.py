@@ -106,28 +106,46 @@ class Page(unittest.TestCase):
             run(ORIEL, "render", SCENE, "--at", name, "--out", own, "--quiet")
             self.assertGreaterEqual(psnr(page, own), 40, name)
 
-    def test_a_backdrop_rests_as_in_the_renderer(self):
-        camera = next(c for c in self.cameras if c["test"])
-        scene, site = self.file("rests"), f"{os.path.dirname(SITE)}/rests"
+    def both_with(self, name, camera, change):
+        """What page and renderer show once `change` has edited manifest.json of the site and scene.json."""
+        scene, site = self.file(name), f"{os.path.dirname(SITE)}/{name}"
         shutil.copytree(SCENE, scene)
         shutil.copytree(SITE, site)
         for file in f"{scene}/scene.json", f"{site}/manifest.json":
             with open(file) as opened:
                 content = json.load(opened)
-            content["backdrop"] = "rests"
+            change(content)
             with open(file, "w") as opened:
                 json.dump(content, opened)
-        moves, rests, own = self.file("moves.png"), self.file("rests.png"), self.file("own-rests.png")
-        self.browser.capture(moves, camera)
+        page, own = self.file(f"{name}.png"), self.file(f"own-{name}.png")
         try:
             self.reopen(self.address.replace(self.path, os.path.relpath(site, os.path.dirname(os.path.dirname(SITE)))))
-            self.browser.capture(rests, camera)
+            self.browser.capture(page, camera)
         finally:
             self.reopen(self.address)
             shutil.rmtree(site)
         run(ORIEL, "render", scene, "--at", camera["name"], "--out", own, "--quiet")
+        return page, own
+
+    def test_a_backdrop_rests_as_in_the_renderer(self):
+        camera = next(c for c in self.cameras if c["test"])
+        moves = self.file("moves.png")
+        self.browser.capture(moves, camera)
+        rests, own = self.both_with("rests", camera, lambda content: content.update(backdrop="rests"))
         self.assertGreaterEqual(psnr(rests, own), 39)
         self.assertGreaterEqual(psnr(rests, own), psnr(moves, own) + 3)
+
+    def test_depths_are_tried_as_in_the_renderer(self):
+        def change(content):
+            content.setdefault("options", {})["guess_depths"] = 16
+            content["tuned"] = {"oriel": {"settings": {"guess_depths": 16}}}
+
+        camera = next(c for c in self.cameras if c["test"])
+        without = self.file("without.png")
+        self.browser.capture(without, camera)
+        tried, own = self.both_with("tried", camera, change)
+        self.assertGreaterEqual(psnr(tried, own), 40)
+        self.assertGreaterEqual(psnr(tried, own), psnr(without, own) + 1)
 
     def test_soft_splats_correct_as_in_the_renderer(self):
         camera = next(c for c in self.cameras if c["test"])
