@@ -38,10 +38,9 @@ static enum orl_result read_exposures(struct orl_job *job)
 static enum orl_result begin(struct orl_job *job)
 {
     double start = orl_time_s();
-    enum orl_result result;
-    if ((result = orl_stages_load(job)) != ORL_OK || (result = orl_stage_collect(job)) != ORL_OK ||
-        (result = read_exposures(job)) != ORL_OK)
-        return result;
+    ORL_TRY(orl_stages_load(job));
+    ORL_TRY(orl_stage_collect(job));
+    ORL_TRY(read_exposures(job));
     return orl_stages_begin(job, orl_time_s() - start);
 }
 

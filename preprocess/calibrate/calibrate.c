@@ -195,24 +195,21 @@ static enum orl_result restart_database(struct calibration *c)
 
 static enum orl_result extract_all(const struct calibration *c, bool costly)
 {
-    enum orl_result result = orl_features_link_masks(c->job);
-    return result == ORL_OK
-               ? orl_features_extract(c->job, &c->groups, &(struct orl_features_run){
-                     .database = ORL_CALIBRATE_STEM, .parts = 1, .costly = costly})
-               : result;
+    ORL_TRY(orl_features_link_masks(c->job));
+    return orl_features_extract(c->job, &c->groups, &(struct orl_features_run){
+        .database = ORL_CALIBRATE_STEM, .parts = 1, .costly = costly});
 }
 
 // More features that bear wider baselines, for sets that hardly overlap.
 static enum orl_result try_costly(struct calibration *c)
 {
-    enum orl_result result;
     struct orl_match_summary pairs;
     say(c, "trying affine-shape features and guided matching");
-    if ((result = set_mark(c, false)) != ORL_OK || (result = restart_database(c)) != ORL_OK ||
-        (result = extract_all(c, true)) != ORL_OK ||
-        (result = orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, &pairs)) != ORL_OK ||
-        (result = map(c, false, NULL)) != ORL_OK)
-        return result;
+    ORL_TRY(set_mark(c, false));
+    ORL_TRY(restart_database(c));
+    ORL_TRY(extract_all(c, true));
+    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, &pairs));
+    ORL_TRY(map(c, false, NULL));
     return enough(c) ? ORL_OK : map(c, true, NULL);
 }
 
@@ -332,22 +329,21 @@ static enum orl_result normalise(const struct calibration *c)
 // Features and matches survive an interruption of the mapper. Those that jobs have made are used.
 static enum orl_result begin_database(struct calibration *c)
 {
-    enum orl_result result = ORL_OK;
     bool joined = false;
     if (is_marked(c)) {
         orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: features and matches are there already");
         return ORL_OK;
     }
     if (orl_parts_begun(c->job))
-        result = orl_parts_join(c->job, &c->pairs, &joined);
-    if (result == ORL_OK && joined)
+        ORL_TRY(orl_parts_join(c->job, &c->pairs, &joined));
+    if (joined) {
         orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: using the features and matches of jobs");
-    if (result != ORL_OK || joined)
-        return result == ORL_OK ? set_mark(c, true) : result;
-    if ((result = orl_job_fresh_dir(c->job, WORK)) != ORL_OK ||
-        (result = normalise(c)) != ORL_OK || (result = extract_all(c, false)) != ORL_OK ||
-        (result = orl_match(c->job, c->way, false, &c->pairs)) != ORL_OK)
-        return result;
+        return set_mark(c, true);
+    }
+    ORL_TRY(orl_job_fresh_dir(c->job, WORK));
+    ORL_TRY(normalise(c));
+    ORL_TRY(extract_all(c, false));
+    ORL_TRY(orl_match(c->job, c->way, false, &c->pairs));
     return set_mark(c, true);
 }
 
@@ -418,40 +414,43 @@ static enum orl_result check_lenses(const struct calibration *c)
     return ORL_OK;
 }
 
+// Says what was done, and hands the model over.
+static void write_record(struct calibration *c, json_t *record)
+{
+    json_object_set_new(record, "tool", json_sprintf("COLMAP %s", c->job->colmap_version));
+    json_object_set_new(record, "cameras", json_integer(c->groups.count));
+    json_object_set_new(record, "matching", json_string(orl_matching_names[c->way]));
+    json_object_set_new(record, "mapper", json_string(orl_mapper_names[c->mapper]));
+    if (c->pairs.tried)
+        json_object_set_new(record, "pairs",
+                            json_pack("{s:I, s:I, s:f}", "tried", (json_int_t)c->pairs.tried,
+                                      "chosen", (json_int_t)c->pairs.chosen, "choosing_s",
+                                      c->pairs.choosing_s));
+    name_left_out(c, record);
+    orl_job_set_calibrated(c->job, &c->best.model);
+}
+
 enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)
 {
     static const char *const ways[] = {
         [ORL_MATCHING_EXHAUSTIVE] = "all pairs", [ORL_MATCHING_SEQUENTIAL] = "neighbours by name",
         [ORL_MATCHING_RETRIEVAL] = "pairs that look alike"};
     struct calibration c = {.job = job, .way = orl_match_way(job->params->matching, job->source_count)};
-    enum orl_result result = orl_job_find_colmap(job);
-    ORL_THEN(result, orl_mapper_choose(job, &c.mapper));
-    if (result != ORL_OK)
-        return result;
-    if ((result = orl_camera_groups_find(job, &c.groups)) != ORL_OK)
-        goto end;
-    orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu photographs, %d camera%s, %s matching (%s)",
-             job->source_count, c.groups.count, c.groups.count == 1 ? "" : "s",
-             orl_matching_names[c.way], ways[c.way]);
-    if ((result = begin_database(&c)) != ORL_OK ||
-        (result = map(&c, false, NULL)) != ORL_OK ||
-        (!all(&c) && (result = try_hard(&c)) != ORL_OK) ||
-        (result = straighten(&c)) != ORL_OK ||
-        (result = check_lenses(&c)) != ORL_OK ||
-        (result = finish(&c)) != ORL_OK)
-        goto end;
-    json_object_set_new(record, "tool", json_sprintf("COLMAP %s", job->colmap_version));
-    json_object_set_new(record, "cameras", json_integer(c.groups.count));
-    json_object_set_new(record, "matching", json_string(orl_matching_names[c.way]));
-    json_object_set_new(record, "mapper", json_string(orl_mapper_names[c.mapper]));
-    if (c.pairs.tried)
-        json_object_set_new(record, "pairs",
-                            json_pack("{s:I, s:I, s:f}", "tried", (json_int_t)c.pairs.tried,
-                                      "chosen", (json_int_t)c.pairs.chosen, "choosing_s",
-                                      c.pairs.choosing_s));
-    name_left_out(&c, record);
-    orl_job_set_calibrated(job, &c.best.model);
-end:
+    ORL_TRY(orl_job_find_colmap(job));
+    ORL_TRY(orl_mapper_choose(job, &c.mapper));
+    enum orl_result result = orl_camera_groups_find(job, &c.groups);
+    if (result == ORL_OK)
+        orl_logf(job->log, ORL_LOG_INFO, "calibrate: %zu photographs, %d camera%s, %s matching (%s)",
+                 job->source_count, c.groups.count, c.groups.count == 1 ? "" : "s",
+                 orl_matching_names[c.way], ways[c.way]);
+    ORL_THEN(result, begin_database(&c));
+    ORL_THEN(result, map(&c, false, NULL));
+    ORL_THEN(result, all(&c) ? ORL_OK : try_hard(&c));
+    ORL_THEN(result, straighten(&c));
+    ORL_THEN(result, check_lenses(&c));
+    ORL_THEN(result, finish(&c));
+    if (result == ORL_OK)
+        write_record(&c, record);
     orl_camera_groups_finish(&c.groups);
     candidate_finish(&c.best);
     return result;

@@ -320,18 +320,17 @@ static enum orl_result choose_pairs(struct choice *c)
     uint8_t *linked = orl_array(c->log, c->count, 1);
     enum orl_result result = c->chosen && c->partners && c->component && ranked && linked
                                  ? ORL_OK : ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        goto end;
-    for (size_t i = 0; i < c->pair_count; i++)
-        ranked[i] = (struct link){.score = score(c, &c->pairs[i]), .pair = i};
-    qsort(ranked, c->pair_count, sizeof *ranked, by_score);
-    choose_best(c);
-    if ((result = choose_successive(c)) != ORL_OK)
-        goto end;
-    choose_shortcuts(c, ranked);
-    while (join_components(c, ranked, linked))
+    if (result == ORL_OK) {
+        for (size_t i = 0; i < c->pair_count; i++)
+            ranked[i] = (struct link){.score = score(c, &c->pairs[i]), .pair = i};
+        qsort(ranked, c->pair_count, sizeof *ranked, by_score);
+        choose_best(c);
+        result = choose_successive(c);
+    }
+    if (result == ORL_OK)
+        choose_shortcuts(c, ranked);
+    while (result == ORL_OK && join_components(c, ranked, linked))
         ;
-end:
     free(ranked);
     free(linked);
     return result;

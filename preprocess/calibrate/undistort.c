@@ -106,23 +106,18 @@ enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
 {
     const struct orl_colmap_model *model;
     size_t photos, linear = 0, masks = 0;
-    enum orl_result result;
-    if ((result = orl_job_find_colmap(job)) != ORL_OK ||
-        (result = run_undistorter(job)) != ORL_OK ||
-        (result = limit_cameras(job)) != ORL_OK ||
-        (result = orl_job_set_sparse(job, WORK "/sparse", &model)) != ORL_OK ||
-        (result = check_output(job, model, record)) != ORL_OK ||
-        (result = orl_undistort_companions(job, ORL_COMPANION_PHOTO, model, WORK "/images",
-                                           &photos)) != ORL_OK ||
-        (result = orl_undistort_companions(job, ORL_COMPANION_LINEAR, model, WORK "/linear",
-                                           &linear)) != ORL_OK ||
-        (result = orl_undistort_companions(job, ORL_COMPANION_MASK, model, WORK "/masks",
-                                           &masks)) != ORL_OK ||
-        (result = orl_job_replace(job, WORK "/sparse", "sparse")) != ORL_OK ||
-        (result = replace_some(job, linear, WORK "/linear", "images_linear")) != ORL_OK ||
-        (result = replace_some(job, masks, WORK "/masks", "masks")) != ORL_OK ||
-        (result = orl_job_replace(job, WORK "/images", "images")) != ORL_OK)
-        return result;
+    ORL_TRY(orl_job_find_colmap(job));
+    ORL_TRY(run_undistorter(job));
+    ORL_TRY(limit_cameras(job));
+    ORL_TRY(orl_job_set_sparse(job, WORK "/sparse", &model));
+    ORL_TRY(check_output(job, model, record));
+    ORL_TRY(orl_undistort_companions(job, ORL_COMPANION_PHOTO, model, WORK "/images", &photos));
+    ORL_TRY(orl_undistort_companions(job, ORL_COMPANION_LINEAR, model, WORK "/linear", &linear));
+    ORL_TRY(orl_undistort_companions(job, ORL_COMPANION_MASK, model, WORK "/masks", &masks));
+    ORL_TRY(orl_job_replace(job, WORK "/sparse", "sparse"));
+    ORL_TRY(replace_some(job, linear, WORK "/linear", "images_linear"));
+    ORL_TRY(replace_some(job, masks, WORK "/masks", "masks"));
+    ORL_TRY(orl_job_replace(job, WORK "/images", "images"));
     if (linear)
         json_object_set_new(record, "linear_scale", json_real(job->linear_scale));
     if (masks)

@@ -530,14 +530,16 @@ enum orl_result orl_stage_expose(struct orl_job *job, json_t *record)
 {
     struct exposing e = {.job = job, .record = record, .response_list = json_array()};
     enum orl_result result = e.response_list ? find_photos(&e) : ORL_ERR_MEMORY;
-    if (result != ORL_OK || (result = set_exposures(&e)) != ORL_OK ||
-        (result = take_samples(&e)) != ORL_OK || (result = fit_all(&e)) != ORL_OK ||
-        (result = estimate_exposures(&e)) != ORL_OK || (result = join_metered(&e)) != ORL_OK ||
-        (result = guess_held_out(&e)) != ORL_OK)
-        goto end;
-    write_record(&e);
-    orl_progress_report(job->progress, "expose", 1, 1, NULL);
-end:
+    ORL_THEN(result, set_exposures(&e));
+    ORL_THEN(result, take_samples(&e));
+    ORL_THEN(result, fit_all(&e));
+    ORL_THEN(result, estimate_exposures(&e));
+    ORL_THEN(result, join_metered(&e));
+    ORL_THEN(result, guess_held_out(&e));
+    if (result == ORL_OK) {
+        write_record(&e);
+        orl_progress_report(job->progress, "expose", 1, 1, NULL);
+    }
     orl_samples_finish(&e.samples);
     json_decref(e.response_list);
     free(e.responses);

@@ -305,20 +305,17 @@ static enum orl_result too_few(const struct orl_job *job)
 
 enum orl_result orl_stage_collect(struct orl_job *job)
 {
-    enum orl_result result;
-    if ((result = orl_photos_list(job)) != ORL_OK)
-        return result;
+    ORL_TRY(orl_photos_list(job));
     orl_masks_set_aside(job);
     drop_jpegs_of_raw(job);
-    if ((result = drop_duplicates(job)) != ORL_OK || (result = inspect_all(job)) != ORL_OK)
-        return result;
+    ORL_TRY(drop_duplicates(job));
+    ORL_TRY(inspect_all(job));
     drop_copies(job);
-    if ((result = drop_doubtful(job)) != ORL_OK)
-        return result;
+    ORL_TRY(drop_doubtful(job));
     if (job->source_count < 3)
         return too_few(job);
-    if ((result = choose_test(job)) != ORL_OK || (result = orl_masks_find(job)) != ORL_OK ||
-        (result = orl_develop(job)) != ORL_OK)
-        return result;
+    ORL_TRY(choose_test(job));
+    ORL_TRY(orl_masks_find(job));
+    ORL_TRY(orl_develop(job));
     return link_photos(job);
 }

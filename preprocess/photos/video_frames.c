@@ -141,24 +141,21 @@ static enum orl_result drop_still(const struct clip *clip, const char *dir)
 
 static enum orl_result make_frames(struct clip *clip, const char *dir)
 {
-    enum orl_result result = orl_video_inspect(clip->job->log, clip->job->progress, clip->path,
-                                               true, &clip->video);
-    if (result == ORL_OK && !(clip->video.seconds > 0))
-        result = orl_fail(clip->job->log, ORL_ERR_DATA, "%s: its length is not known", clip->path);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_video_inspect(clip->job->log, clip->job->progress, clip->path, true, &clip->video));
+    if (!(clip->video.seconds > 0))
+        return orl_fail(clip->job->log, ORL_ERR_DATA, "%s: its length is not known", clip->path);
     const struct orl_prepare_params *params = clip->job->params;
     double fps = params->frames ? params->frames / clip->video.seconds
                  : params->fps > 0 ? params->fps : FPS;
     clip->rate = fps * STRETCH;
-    if ((result = measure_blur(clip)) != ORL_OK)
-        return result;
+    ORL_TRY(measure_blur(clip));
     size_t *chosen = orl_array(clip->job->log, clip->count / STRETCH + 1, sizeof *chosen);
     ORL_TRY_MEMORY(chosen);
     size_t count = orl_frames_choose(clip->blur, clip->count, STRETCH, chosen);
     // The last stretch may be a rest.
     if (params->frames && count > (size_t)params->frames)
         count = (size_t)params->frames;
+    enum orl_result result = ORL_OK;
     for (size_t from = 0, to; result == ORL_OK && from < count; from = to) {
         to = count - from < RUN_MAX ? count : from + RUN_MAX;
         result = write_frames(clip, chosen, from, to, dir);
