@@ -170,9 +170,8 @@ static enum orl_result run_bench(struct call *call)
     enum orl_result result = plan_sizes(log, o, &plan);
     ORL_THEN(result, plan_points(log, o, &plan));
     ORL_THEN(result, command_scene(call, NULL));
-    if (result == ORL_OK)
-        result = orl_choices_make(log, call->scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
-                                  &plan.choices);
+    ORL_THEN(result, orl_choices_make(log, call->scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
+                                      &plan.choices));
     ORL_THEN(result, command_device(call));
     const struct orl_bench_params params = {
         .choices = plan.choices.items, .choice_count = plan.choices.count,

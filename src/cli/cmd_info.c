@@ -110,9 +110,7 @@ COMMAND_OPTIONS(info_options, INFO_OPTIONS)
 static enum orl_result check(const struct orl_log *log, const char *dir)
 {
     size_t bad, files;
-    enum orl_result result = orl_manifest_check(log, dir, &bad, &files);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_manifest_check(log, dir, &bad, &files));
     if (bad)
         return orl_fail(log, ORL_ERR_DATA,
                         "%s: %zu of %zu files are damaged; oriel prepare --resume makes them again",
@@ -126,9 +124,7 @@ static enum orl_result run_info(struct call *call)
     const struct info_options *o = call->options;
     if (o->check)
         return check(call->log, call->inputs[0]);
-    enum orl_result result = command_scene(call, NULL);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(command_scene(call, NULL));
     return o->json ? print_json(call->log, call->scene) : print_text(call->log, call->scene);
 }
 

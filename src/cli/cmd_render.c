@@ -110,10 +110,9 @@ static enum orl_result run_render(struct call *call)
         result = orl_scene_set_frame(call->log, call->scene, o->time_step);
     if (result == ORL_OK)
         limits.radiance = radiance_chosen(call->log, call->scene, o->wish);
-    if (result == ORL_OK)
-        result = orl_choice_make(call->log, call->scene,
-                                 limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
-                                 o->method, &o->settings, &job.choice);
+    ORL_THEN(result, orl_choice_make(call->log, call->scene,
+                                     limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+                                     o->method, &o->settings, &job.choice));
     ORL_THEN(result, orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path));
     ORL_THEN(result, orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
     ORL_THEN(result, command_renderer(call, &limits));

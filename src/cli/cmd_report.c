@@ -68,8 +68,7 @@ static enum orl_result become(const struct orl_log *log, const char *script, con
     while (inputs[input_count])
         input_count++;
     const char **argv = orl_array(log, count + input_count + 5, sizeof *argv);
-    if (!argv)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(argv);
     argv[at++] = "python3";
     argv[at++] = script;
     argv[at++] = program;
@@ -103,9 +102,7 @@ static enum orl_result check_methods(const struct call *call)
 
 static enum orl_result run_report(struct call *call)
 {
-    enum orl_result result = check_methods(call);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check_methods(call));
     json_t *words = json_array();
     char program[ORL_PATH_SIZE], path[ORL_PATH_SIZE];
     const char *script = realpath("/proc/self/exe", program)
@@ -113,7 +110,8 @@ static enum orl_result run_report(struct call *call)
     orl_arguments_record(words, call->command->rows(), call->options, NULL);
     orl_arguments_record(words, common_option_rows(), call->common, NULL);
     terminal_finish(call->terminal);
-    result = script ? become(call->log, script, program, words, call->inputs) : ORL_ERR_NOT_FOUND;
+    enum orl_result result = script ? become(call->log, script, program, words, call->inputs)
+                                    : ORL_ERR_NOT_FOUND;
     json_decref(words);
     return result;
 }

@@ -143,8 +143,7 @@ static enum orl_result run_synth(struct call *call)
         result = orl_synth_check(log, &monument);
     if (result == ORL_OK && o->path)
         result = read_path(log, o->path, &monument, &call->path);
-    if (result == ORL_OK)
-        result = is_figures ? make_figures(call, &figures) : make_monument(call, &monument);
+    ORL_THEN(result, is_figures ? make_figures(call, &figures) : make_monument(call, &monument));
     return result;
 }
 

@@ -36,9 +36,8 @@ static enum orl_result run_walk(struct call *call)
     enum orl_result result = command_scene(call, o->light);
     if (result == ORL_OK)
         radiance = radiance_chosen(call->log, call->scene, o->wish);
-    if (result == ORL_OK)
-        result = orl_choice_make(call->log, call->scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
-                                 o->method, &o->settings, &choice);
+    ORL_THEN(result, orl_choice_make(call->log, call->scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+                                     o->method, &o->settings, &choice));
     const struct orl_renderer_params limits = {.radiance = radiance,
                                                .max_vram_bytes = o->max_vram_bytes};
     ORL_THEN(result, command_renderer(call, &limits));

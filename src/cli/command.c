@@ -55,13 +55,11 @@ static enum orl_result run(const struct orl_log *log, struct call *call, size_t 
     if (input_count < command->inputs_min)
         return orl_fail(log, ORL_ERR_ARGUMENT, "usage: oriel %s %s", command->name,
                         command->usage);
-    enum orl_result result = orl_arguments_check(log, command->name, command->rows(), call->options);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_arguments_check(log, command->name, command->rows(), call->options));
     terminal_init(terminal, call->common->verbose ? ORL_LOG_DEBUG : ORL_LOG_INFO, call->common->quiet);
     call->log = &terminal->log;
     call->progress = &terminal->progress;
-    result = command->run(call);
+    enum orl_result result = command->run(call);
     orl_renderer_destroy(&call->renderer);
     orl_gpu_destroy(&call->gpu);
     orl_scene_destroy(&call->scene);

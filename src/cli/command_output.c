@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/memory.h"
 
 const char *output_tone_name(size_t index)
 {
@@ -61,8 +62,7 @@ bool report_on_stdout(const char *path)
 enum orl_result report_write(const struct orl_log *log, const char *path, char *text)
 {
     enum orl_result result = ORL_OK;
-    if (!text)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(text);
     if (!report_on_stdout(path))
         result = orl_file_write(log, path, text, strlen(text));
     else if (puts(text) < 0 || fflush(stdout) != 0)

@@ -154,8 +154,7 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
     double frames[TRACE_FRAMES][2]; // start and end
     struct orl_pass_trace trace = {.capacity = TRACE_SPANS};
     trace.spans = orl_array(job->log, TRACE_SPANS, sizeof *trace.spans);
-    if (!trace.spans)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(trace.spans);
     enum orl_result result = ORL_OK;
     orl_gpu_time_passes(job->gpu, true);
     orl_gpu_trace_passes(job->gpu, &trace);
@@ -168,8 +167,7 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
     orl_gpu_trace_passes(job->gpu, NULL);
     orl_gpu_time_passes(job->gpu, false);
     orl_gpu_take_times(job->gpu, NULL, 0);
-    if (result == ORL_OK)
-        result = write_trace(job, &trace, frames);
+    ORL_THEN(result, write_trace(job, &trace, frames));
     free(trace.spans);
     return result;
 }

@@ -54,9 +54,7 @@ static void spread(struct orl_points *points, size_t i, size_t copy, size_t copi
 enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_points *all,
                                    size_t count, struct orl_points *points)
 {
-    enum orl_result result = orl_points_init(log, points, count);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_points_init(log, points, count));
     // The total area stays the same: fewer points are larger.
     float scale = sqrtf((float)all->count / (float)count);
     for (size_t i = 0; i < count; i++) {

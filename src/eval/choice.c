@@ -73,11 +73,9 @@ json_t *orl_choice_record(const struct orl_choice *choice, double before_psnr_db
 static enum orl_result add(const struct orl_log *log, const struct orl_choice *choice,
                            struct orl_choices *choices)
 {
-    enum orl_result result = orl_grow(log, (void **)&choices->items, &choices->capacity,
-                                      choices->count + 1, sizeof *choices->items);
-    if (result == ORL_OK)
-        choices->items[choices->count++] = *choice;
-    return result;
+    ORL_TRY(ORL_GROW(log, choices->items, choices->capacity, choices->count));
+    choices->items[choices->count++] = *choice;
+    return ORL_OK;
 }
 
 // Adds the choice once with each value of "KEY=A,B,..".
@@ -118,9 +116,7 @@ static enum orl_result add_method(const struct wish *wish, const struct orl_meth
                                   struct orl_choices *choices)
 {
     struct orl_choice choice;
-    enum orl_result result = make(wish, method, &choice);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(make(wish, method, &choice));
     return wish->varied ? add_varied(wish->log, &choice, wish->varied, choices)
                         : add(wish->log, &choice, choices);
 }

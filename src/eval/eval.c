@@ -140,10 +140,9 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
                                               params->divide > 1 ? params->divide : 1, &heldout);
     view->width = heldout.picture.width;
     view->height = heldout.picture.height;
-    if (result == ORL_OK)
-        result = params->pictures ? orl_eval_read_picture(job->log, job->scene, params->pictures,
-                                                          &heldout, &rendered, &coverage)
-                                  : render(job, &heldout, view, &rendered, &coverage);
+    ORL_THEN(result, params->pictures ? orl_eval_read_picture(job->log, job->scene, params->pictures,
+                                                              &heldout, &rendered, &coverage)
+                                      : render(job, &heldout, view, &rendered, &coverage));
     ORL_THEN(result, orl_metrics_compare(job->log, &rendered, &heldout.picture, &coverage, &view->metrics));
     ORL_THEN(result, orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip));
     if (result == ORL_OK && job->eval->has_vehicle)
@@ -172,8 +171,7 @@ static enum orl_result list_views(const struct job *job, struct orl_eval *eval)
 {
     const struct orl_scene *scene = job->scene;
     eval->views = orl_array(job->log, orl_heldout_count(scene), sizeof *eval->views);
-    if (!eval->views)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(eval->views);
     for (size_t i = 0; i < scene->photo_count; i++)
         if (orl_heldout_chosen(scene, true, (size_t)job->params->views, i))
             eval->views[eval->view_count++].photo = i;

@@ -32,10 +32,7 @@ static void print_stem(const struct orl_scene *scene, size_t photo, char stem[OR
 static enum orl_result beside(const struct orl_log *log, const struct orl_image *rendered,
                               const struct orl_image *photograph, struct orl_image *panels)
 {
-    enum orl_result result = orl_image_init(log, panels, rendered->width * 3, rendered->height, 3,
-                                            ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, panels, rendered->width * 3, rendered->height, 3, ORL_PIXEL_U8));
     size_t row = (size_t)rendered->width * 3;
     for (size_t y = 0; y < (size_t)rendered->height; y++) {
         const uint8_t *a = rendered->u8 + y * row, *b = photograph->u8 + y * row;
@@ -104,9 +101,8 @@ enum orl_result orl_eval_read_picture(const struct orl_log *log, const struct or
         result = orl_fail(log, ORL_ERR_DATA, "%s has %dx%d pixels, the photograph %dx%d", path,
                           other.width, other.height, width, height);
     bool as_photograph = other.width / n == width && other.height / n == height;
-    if (result == ORL_OK)
-        result = as_photograph ? orl_heldout_shrink(log, &other, n, picture)
-                               : orl_bridge_resize(log, &other, width, height, picture);
+    ORL_THEN(result, as_photograph ? orl_heldout_shrink(log, &other, n, picture)
+                                   : orl_bridge_resize(log, &other, width, height, picture));
     ORL_THEN(result, orl_image_init(log, coverage, width, height, 1, ORL_PIXEL_F32));
     for (int i = 0; result == ORL_OK && i < width * height; i++)
         coverage->f32[i] = 1;

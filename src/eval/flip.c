@@ -242,8 +242,7 @@ static enum orl_result prepare(const struct orl_log *log, const struct orl_image
     *p = (struct planes){.width = image->width, .height = image->height};
     // The last array also holds a padded row, which may be longer than a small picture.
     p->all = orl_array(log, 8 * count + (size_t)image->width + TAPS_MAX, sizeof *p->all);
-    if (!p->all)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(p->all);
     float **const planes[] = {&p->y, &p->cx, &p->cz, &p->edge, &p->point,
                               &p->spare[0], &p->spare[1], &p->work[0], &p->work[1]};
     for (size_t i = 0; i < ORL_COUNT(planes); i++)

@@ -144,16 +144,14 @@ static enum orl_result moment(const struct orl_log *log, const struct orl_image 
                               const struct orl_image *b, int which, struct orl_image *blurred)
 {
     struct orl_image product;
-    enum orl_result result = orl_image_init(log, &product, a->width, a->height, 1, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, &product, a->width, a->height, 1, ORL_PIXEL_F32));
     size_t count = pixel_count(a);
     for (size_t i = 0; i < count; i++) {
         float x = luma(a->u8 + 3 * i) - luma_shift, y = luma(b->u8 + 3 * i) - luma_shift;
         const float values[5] = {x, y, x * x, y * y, x * y};
         product.f32[i] = values[which];
     }
-    result = orl_bridge_blur(log, &product, SSIM_TAPS, 1.5, blurred);
+    enum orl_result result = orl_bridge_blur(log, &product, SSIM_TAPS, 1.5, blurred);
     orl_image_finish(&product);
     return result;
 }
@@ -231,8 +229,7 @@ static enum orl_result measure_rephoto(const struct orl_log *log, const struct o
 {
     size_t width = (size_t)a->width;
     int64_t(*columns)[SUMS] = orl_array(log, width, sizeof *columns);
-    if (!columns)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(columns);
     double error = 0, patches = 0, complete = 0;
     for (int y = 0; y < a->height; y++) {
         int64_t patch[SUMS] = {0};

@@ -42,10 +42,7 @@ static bool is_over(const struct orl_search *s)
 
 static enum orl_result note_trial(struct orl_search *s, const struct orl_trial *trial)
 {
-    enum orl_result result = orl_grow(s->log, (void **)&s->trials, &s->trial_capacity,
-                                      s->trial_count + 1, sizeof *s->trials);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(ORL_GROW(s->log, s->trials, s->trial_capacity, s->trial_count));
     s->trials[s->trial_count++] = *trial;
     if (s->params.on_trial)
         s->params.on_trial(s->params.priv, trial);
@@ -60,10 +57,8 @@ static enum orl_result try_choice(struct orl_search *s, const struct orl_choice 
     struct orl_score score = {0};
     double done = (double)s->trial_count, total = fmax(s->planned, done + 1);
     orl_progress_report(s->params.progress, "search", done, total, trial->key);
-    enum orl_result result = orl_score_measure(s->log, s->renderer, &s->validation,
-                                               &choice->params, s->params.progress, &score);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_score_measure(s->log, s->renderer, &s->validation, &choice->params, s->params.progress,
+                              &score));
     trial->method = choice->method;
     trial->psnr_db = score.psnr_db;
     trial->ssim = score.ssim;

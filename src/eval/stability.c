@@ -256,8 +256,7 @@ enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_s
     struct orl_scene training = *scene; // only its photographs are replaced; their names and
                                         // the points belong to the scene
     training.photos = orl_array(log, scene->photo_count, sizeof *training.photos);
-    if (!training.photos)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(training.photos);
     training.photo_count = 0;
     for (size_t i = 0; i < scene->photo_count; i++)
         if (!scene->photos[i].test)

@@ -89,8 +89,7 @@ static enum orl_result take_passes(struct orl_gpu *gpu, const struct orl_timing_
     size_t frames = params->pass_frames < timing->frames ? params->pass_frames : timing->frames;
     double unused[2], *columns =
         orl_array(orl_gpu_log(gpu), frames * ORL_TIMING_PASSES_MAX, sizeof *columns);
-    if (!columns)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(columns);
     enum orl_result result = ORL_OK;
     orl_gpu_take_times(gpu, NULL, 0);
     orl_gpu_time_passes(gpu, true);

@@ -19,8 +19,7 @@ enum orl_result orl_trim_state_copy(const struct orl_log *log, const struct trim
 {
     *to = *from;
     to->removed = orl_array(log, photo_count, sizeof *to->removed);
-    if (!to->removed)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(to->removed);
     memcpy(to->removed, from->removed, photo_count * sizeof *to->removed);
     return ORL_OK;
 }
@@ -82,8 +81,7 @@ enum orl_result orl_trim_model_open(const struct trim_source *source,
     size_t count = (size_t)(orl_trim_point_shares[state->points] * (double)all + 0.5);
     struct trim_model *model = orl_array(source->log, 1, sizeof *model);
     *out = model;
-    if (!model)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(model);
     model->scene = *source->scene;
     model->scene.defaults = orl_trim_defaults(source, state);
     enum orl_result result = ORL_OK;

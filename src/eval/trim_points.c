@@ -59,8 +59,7 @@ static enum orl_result choose_views(const struct orl_log *log, const struct orl_
 {
     views->count = 0;
     views->items = orl_array(log, most + 1, sizeof *views->items);
-    if (!views->items)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(views->items);
     for (size_t i = 0; i < scene->photo_count; i++) {
         if (!orl_heldout_chosen(scene, false, (most + 1) / 2, i))
             continue;
@@ -159,8 +158,7 @@ static enum orl_result sort(const struct orl_log *log, const struct ranker *r)
 {
     struct orl_point_ranking *ranking = r->ranking;
     struct rank *ranks = orl_array(log, ranking->count, sizeof *ranks);
-    if (!ranks)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(ranks);
     for (size_t i = 0; i < ranking->count; i++)
         ranks[i] = (struct rank){r->level[i], ranking->pixels[i], (uint32_t)i};
     qsort(ranks, ranking->count, sizeof *ranks, compare_ranks);

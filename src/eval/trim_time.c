@@ -103,9 +103,7 @@ enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)
     struct pair pair = {s, {{s->model->renderer, &s->now.state},
                             {t->own ? t->own->renderer : s->model->renderer, &t->now.state}}, 0};
     double limit = orl_trim_slow_limit(s) / s->now.slower;
-    enum orl_result result = compare(&pair, limit, trial_error, ROUNDS_OF_TRIAL, &timing);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(compare(&pair, limit, trial_error, ROUNDS_OF_TRIAL, &timing));
     bool same = fabs(log(timing.ratio)) <= same_errors * timing.error;
     t->now.slower = same ? 1 : timing.ratio;
     return ORL_OK;

@@ -64,8 +64,7 @@ enum orl_result orl_trim_trial_begin(struct trim_search *s, enum orl_trim_part p
 {
     *t = (struct trim_trial){.part = part, .now.slower = 1};
     t->now.score = orl_array(s->source.log, s->targets.count, sizeof *t->now.score);
-    if (!t->now.score)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(t->now.score);
     for (size_t i = 0; i < s->targets.count; i++)
         t->now.score[i] = (struct trim_score){NAN, NAN};
     return orl_trim_state_copy(s->source.log, &s->now.state, s->source.scene->photo_count, &t->now.state);
@@ -104,10 +103,8 @@ static bool is_open(const struct trim_search *s, const struct trim_trial *t)
 
 enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial *t, bool shares)
 {
-    enum orl_result result =
-        shares ? ORL_OK : orl_trim_model_open(&s->source, &t->now.state, &t->own);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(shares ? ORL_OK : orl_trim_model_open(&s->source, &t->now.state, &t->own));
+    enum orl_result result = ORL_OK;
     const struct trim_model *model = shares ? s->model : t->own;
     t->now.bytes = orl_trim_model_bytes(s, model, &t->now.state);
     for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
@@ -140,10 +137,7 @@ void orl_trim_trial_log(const struct trim_search *s, const struct trim_trial *t,
 static enum orl_result note(struct trim_search *s, const struct trim_trial *t)
 {
     struct orl_trim *trim = s->trim;
-    enum orl_result result = orl_grow(s->source.log, (void **)&trim->steps, &trim->step_capacity,
-                                      trim->step_count + 1, sizeof *trim->steps);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(ORL_GROW(s->source.log, trim->steps, trim->step_capacity, trim->step_count));
     struct orl_trim_step *step = &trim->steps[trim->step_count++];
     *step = (struct orl_trim_step){
         .part = t->part, .loss_db = t->step_db, .loss_ssim = t->step_ssim, .taken = true,
@@ -157,12 +151,8 @@ static enum orl_result note(struct trim_search *s, const struct trim_trial *t)
 
 enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t)
 {
-    enum orl_result result = note(s, t);
-    if (result == ORL_OK)
-        result = orl_grow(s->source.log, (void **)&s->history, &s->history_capacity,
-                          s->history_count + 1, sizeof *s->history);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(note(s, t));
+    ORL_TRY(ORL_GROW(s->source.log, s->history, s->history_capacity, s->history_count));
     s->history[s->history_count++] = (struct trim_past){s->now, s->trim->step_count - 1};
     t->now.slower *= s->now.slower;
     s->now = t->now;

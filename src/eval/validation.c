@@ -29,8 +29,7 @@ static enum orl_result copy_photos(const struct orl_log *log, const struct orl_s
 {
     bool unknown = exposure_is_unknown(scene);
     validation->photos = orl_array(log, scene->photo_count, sizeof *validation->photos);
-    if (!validation->photos)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(validation->photos);
     memcpy(validation->photos, scene->photos, scene->photo_count * sizeof *validation->photos);
     for (size_t i = 0; unknown && i < scene->photo_count; i++)
         for (int c = 0; c < 3; c++)

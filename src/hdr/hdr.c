@@ -41,8 +41,7 @@ enum orl_result orl_hdr_create(struct orl_gpu *gpu, const struct orl_scene *scen
         return orl_fail(log, ORL_ERR_ARGUMENT,
                         "%s: its photographs are radiance already: use --merge fused", scene->dir);
     struct orl_hdr *hdr = orl_array(log, 1, sizeof *hdr);
-    if (!hdr)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(hdr);
     hdr->gpu = gpu;
     hdr->scene = scene;
     hdr->params = *params;

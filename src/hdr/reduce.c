@@ -7,10 +7,8 @@
 static enum orl_result reduce_mean(const struct orl_log *log, const struct orl_image *fine,
                                    int factor, struct orl_image *out)
 {
-    enum orl_result result = orl_image_init(log, out, fine->width / factor, fine->height / factor,
-                                            fine->channels, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, out, fine->width / factor, fine->height / factor, fine->channels,
+                           ORL_PIXEL_F32));
     size_t channels = (size_t)fine->channels, width = (size_t)fine->width;
     size_t side = (size_t)factor;
     float share = 1 / (float)(factor * factor);

@@ -42,9 +42,9 @@ static enum orl_result write_picture(const struct replacement *r, const char *na
     const char *path = ORL_PATH(r->dir, "images/%s", name);
     ORL_TRY(orl_file_make_folder(r->log, path));
     enum orl_result result = orl_tone_apply(r->log, light, &r->params->tone, &picture);
-    if (result == ORL_OK)
-        result = orl_path_has_extension(name, "jpg jpeg") ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
-                               : orl_png_write(r->log, path, &picture);
+    ORL_THEN(result, orl_path_has_extension(name, "jpg jpeg")
+                         ? orl_jpeg_write(r->log, path, &picture, JPEG_QUALITY, NULL)
+                         : orl_png_write(r->log, path, &picture));
     orl_image_finish(&picture);
     return result;
 }
@@ -116,8 +116,7 @@ static enum orl_result write_manifest(const struct replacement *r)
 static enum orl_result choose(struct replacement *r)
 {
     r->keep = orl_array(r->log, r->scene->photo_count, sizeof *r->keep);
-    if (!r->keep)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(r->keep);
     for (size_t i = 0; i < r->scene->photo_count; i++) {
         r->count += is_replaced(r, i);
         r->keep[i] = is_replaced(r, i) || r->scene->photos[i].test;

@@ -40,12 +40,10 @@ static enum orl_result add_photo(const struct orl_log *log, struct series_set *s
         s = &set->items[set->count++];
         s->number = photo->series;
         s->skip = orl_array(log, set->scene.photo_count, sizeof *s->skip);
-        if (!s->skip)
-            return ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(s->skip);
         if (photo->response >= 0) {
             s->response = orl_array(log, 3, sizeof *s->response);
-            if (!s->response)
-                return ORL_ERR_MEMORY;
+            ORL_TRY_MEMORY(s->response);
             memcpy(s->response, set->scene.responses[photo->response].linear,
                    3 * sizeof *s->response);
         }
@@ -63,8 +61,7 @@ enum orl_result orl_series_init(struct orl_gpu *gpu, const struct orl_scene *sce
     set->scene = *scene;
     set->scene.photos = orl_array(log, scene->photo_count, sizeof *scene->photos);
     set->items = orl_array(log, scene->photo_count, sizeof *set->items);
-    if (!set->scene.photos || !set->items)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(set->scene.photos && set->items);
     memcpy(set->scene.photos, scene->photos, scene->photo_count * sizeof *scene->photos);
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
         if (in_use(params, scene, i))
@@ -196,9 +193,7 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
     // Antialiasing is off: all series need the same depth edges.
     struct orl_render_params render = params->render;
     render.antialias = ORL_ANTIALIAS_OFF;
-    enum orl_result result = orl_renderer_draw(set->renderer, view, &render, s->skip, &picture);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_renderer_draw(set->renderer, view, &render, s->skip, &picture));
     form_opinions(&params->sensor, s, s->ev - range[0], &picture, estimates + k, set->count);
     if (k == 0) {
         *frame = picture;
@@ -220,9 +215,8 @@ enum orl_result orl_series_draw(const struct orl_log *log, struct series_set *se
     enum orl_result result = estimates ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t k = 0; result == ORL_OK && k < set->count; k++)
         result = draw_series(set, k, params, view, skip, estimates, frame);
-    if (result == ORL_OK)
-        result = orl_image_init(log, &frame->confidence, view->camera.width, view->camera.height, 1,
-                                ORL_PIXEL_F32);
+    ORL_THEN(result, orl_image_init(log, &frame->confidence, view->camera.width, view->camera.height, 1,
+                                    ORL_PIXEL_F32));
     exposure_range(set, range);
     float least = orl_least_radiance(&params->sensor, range[1], true);
     for (size_t i = 0; result == ORL_OK && i < pixels; i++)

@@ -89,8 +89,7 @@ enum orl_result orl_soft_loss(const struct orl_log *log, const struct orl_image 
     struct planes p = {.width = picture->width, .height = picture->height,
                        .pixels = (size_t)picture->width * (size_t)picture->height};
     p.memory = orl_array(log, p.pixels, PLANES * sizeof *p.memory);
-    if (!p.memory)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(p.memory);
     double whole = 0, sum = 0;
     for (int k = 0; k < TAPS; k++)
         whole += exp(-0.5 * (k - REACH) * (k - REACH) / (SIGMA * SIGMA));

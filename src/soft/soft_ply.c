@@ -59,7 +59,7 @@ static enum orl_result read_all(const struct orl_log *log, struct orl_ply *ply, 
         if (at[k] < 0 && columns[k].value >= 0)
             return orl_ply_bad(ply, "a property of soft splats is missing");
     }
-    ORL_TRY(orl_grow(log, (void **)&model->splats, &model->capacity, element->count + 1, sizeof *model->splats));
+    ORL_TRY(ORL_GROW(log, model->splats, model->capacity, element->count));
     for (uint64_t i = 0; i < element->count; i++) {
         ORL_TRY(orl_ply_record(ply, element, values, -1, NULL));
         float *s = model->splats[model->count++];
