@@ -41,8 +41,7 @@ struct densifier {
     struct orl_colmap_model own_model; // read here when the caller gives none
     struct densify_photos photos;
     struct densify_plan *plans;
-    struct densify_device *device;
-    struct densify_cache *cache;
+    struct densify_cache cache;
     struct pass passes[PASSES_MAX];
     int pass_count;
     double done, total;
@@ -220,7 +219,7 @@ static enum orl_result read_source_depth(const struct densifier *d, const struct
     return check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
 }
 
-static enum orl_result job_open(const struct densifier *d, size_t photo, const struct pass *pass,
+static enum orl_result job_open(struct densifier *d, size_t photo, const struct pass *pass,
                                 struct densify_job *job)
 {
     const struct densify_plan *plan = &d->plans[photo];
@@ -236,15 +235,15 @@ static enum orl_result job_open(const struct densifier *d, size_t photo, const s
         .done = d->done,
         .total = d->total,
     };
-    orl_densify_cache_turn(d->cache);
-    ORL_TRY(orl_densify_cache_get(d->cache, photo, &job->reference));
+    d->cache.turn++;
+    ORL_TRY(orl_densify_cache_get(&d->cache, photo, &job->reference));
     job->levels = level_count(job->reference->levels[0].width, job->reference->levels[0].height);
     if (pass->geometric || job->levels <= d->shrink)
         job->levels = d->shrink + 1;
     for (int k = 0; k < plan->count; k++) {
         size_t source = plan->sources[k].photo;
         job->source_views[k] = d->photos.views[source];
-        ORL_TRY(orl_densify_cache_get(d->cache, source, &job->sources[k]));
+        ORL_TRY(orl_densify_cache_get(&d->cache, source, &job->sources[k]));
         if (pass->geometric)
             ORL_TRY(read_source_depth(d, &pass[-1], source, k, job));
     }
@@ -261,12 +260,8 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo,
     struct densify_maps maps = {0};
     int width, height;
     ORL_TRY(orl_picture_size(d->log, PHOTO_PATH(d, photo), &width, &height));
-    enum orl_result result = orl_image_init(d->log, &maps.depth, width >> d->shrink, height >> d->shrink, 1,
-                                            ORL_PIXEL_F32);
-    ORL_THEN(result, orl_image_init(d->log, &maps.normal, width >> d->shrink, height >> d->shrink, 3,
-                                    ORL_PIXEL_F32));
-    ORL_THEN(result, orl_image_init(d->log, &maps.confidence, width >> d->shrink, height >> d->shrink,
-                                    1, ORL_PIXEL_F32));
+    enum orl_result result =
+        orl_densify_maps_init(d->log, width >> d->shrink, height >> d->shrink, &maps);
     ORL_THEN(result, write_maps(d, photo, pass, &maps));
     orl_densify_maps_finish(&maps);
     return result;
@@ -282,32 +277,31 @@ static enum orl_result read_start(const struct densifier *d, size_t photo,
     return check_size(d, job->name, job->reference, &start->normal);
 }
 
+// What is done to the maps of the last pass.
+static enum orl_result clean(const struct densifier *d, const struct densify_job *job,
+                             struct densify_maps *maps)
+{
+    size_t pixels = (size_t)maps->depth.width * (size_t)maps->depth.height;
+    struct orl_camera camera = orl_densify_level_camera(&job->reference->camera, job->finest);
+    ORL_TRY(orl_densify_remove_speckles(d->log, &camera, maps, pixels / SPECKLE_SHARE));
+    ORL_TRY(orl_densify_trim_outlines(d->log, &camera, &job->reference->levels[job->finest], maps));
+    return orl_densify_complete(d->log, job, maps);
+}
+
 static enum orl_result process(struct densifier *d, size_t photo, const struct pass *pass)
 {
+    const struct densify_device device = {d->gpu, &d->params};
     struct densify_maps start = {0}, maps = {0};
-    struct densify_job job = {0};
+    struct densify_job job;
     enum orl_result result = job_open(d, photo, pass, &job);
-    if (result != ORL_OK)
-        goto end;
-    if (pass->geometric) {
-        result = read_start(d, photo, &pass[-1], &job, &start);
-        job.start = &start;
-        ORL_THEN(result, orl_densify_geometric(d->device, &job, &maps));
-    } else {
-        result = orl_densify_photometric(d->device, &job, &maps);
-    }
-    size_t pixels = (size_t)maps.depth.width * (size_t)maps.depth.height;
-    struct orl_camera camera = orl_densify_level_camera(&job.reference->camera, job.finest);
-    if (result == ORL_OK && job.last)
-        result = orl_densify_remove_speckles(d->log, &camera, &maps, pixels / SPECKLE_SHARE,
-                                             0.01f);
-    if (result == ORL_OK && job.last)
-        result = orl_densify_trim_outlines(d->log, &camera, &job.reference->levels[job.finest],
-                                           &maps);
-    if (result == ORL_OK && job.last)
-        result = orl_densify_complete(d->log, &job, &maps);
+    job.start = &start;
+    if (pass->geometric)
+        ORL_THEN(result, read_start(d, photo, &pass[-1], &job, &start));
+    ORL_THEN(result, pass->geometric ? orl_densify_geometric(&device, &job, &maps)
+                                     : orl_densify_photometric(&device, &job, &maps));
+    if (job.last)
+        ORL_THEN(result, clean(d, &job, &maps));
     ORL_THEN(result, write_maps(d, photo, pass, &maps));
-end:
     orl_densify_maps_finish(&start);
     orl_densify_maps_finish(&maps);
     job_finish(&job);
@@ -479,8 +473,7 @@ static enum orl_result lock_workspace(struct densifier *d)
 
 static void close_densifier(struct densifier *d)
 {
-    orl_densify_cache_destroy(&d->cache);
-    orl_densify_device_destroy(&d->device);
+    orl_densify_cache_finish(&d->cache);
     free(d->plans);
     orl_densify_photos_finish(&d->photos);
     orl_colmap_finish(&d->own_model);
@@ -501,10 +494,8 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
 {
     struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
                           .progress = progress, .workspace = workspace, .lock_fd = -1};
-    const char *images = ORL_PATH(workspace, "images");
+    d.cache = (struct densify_cache){d.log, &d.photos, ORL_PATH(workspace, "images"), NULL, 0, 0};
     enum orl_result result = open_densifier(&d, photos);
-    ORL_THEN(result, orl_densify_device_create(gpu, &d.params, &d.device));
-    ORL_THEN(result, orl_densify_cache_create(d.log, &d.photos, images, &d.cache));
     plan_passes(&d);
     ORL_THEN(result, process_passes(&d));
     close_densifier(&d);

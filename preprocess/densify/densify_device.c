@@ -48,12 +48,6 @@ static const struct {
     [FINISH_LAST] = {"densify/finish.comp", "GEOMETRIC\nSMOOTH"},
 };
 
-struct densify_device {
-    struct orl_gpu *gpu;
-    struct orl_densify_params params;
-    int padding; // texels around each source layer
-};
-
 // The state of one level.
 struct level {
     struct orl_tex *reference, *sources, *source_depths, *planes, *costs, *view_costs;
@@ -73,28 +67,6 @@ static void level_finish(struct orl_gpu *gpu, struct level *level)
     orl_tex_destroy(gpu, &level->extra);
 }
 
-enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
-                                          const struct orl_densify_params *params,
-                                          struct densify_device **out)
-{
-    struct densify_device *device = orl_array(orl_gpu_log(gpu), 1, sizeof *device);
-    *out = device;
-    ORL_TRY_MEMORY(device);
-    device->gpu = gpu;
-    device->params = *params;
-    device->padding = orl_densify_padding(params);
-    return ORL_OK;
-}
-
-void orl_densify_device_destroy(struct densify_device **handle)
-{
-    struct densify_device *device = *handle;
-    if (!device)
-        return;
-    free(device);
-    *handle = NULL;
-}
-
 static int half(int value)
 {
     return value > 1 ? value / 2 : 1;
@@ -103,7 +75,7 @@ static int half(int value)
 static struct orl_prog *program_of(const struct densify_device *device, enum program which)
 {
     char defines[256];
-    const struct orl_densify_params *p = &device->params;
+    const struct orl_densify_params *p = device->params;
     // Coarser levels have found the rough shape, and agreement with other photographs holds planes
     // in place. Patches may therefore be small, so that a patch lies on one surface up to a pixel
     // or two from its edge.
@@ -113,7 +85,7 @@ static struct orl_prog *program_of(const struct densify_device *device, enum pro
     int radius = fine ? (p->window_radius + 1) / 2 : p->window_radius;
     snprintf(defines, sizeof defines, "RADIUS %d\nSTEP %d\nSOURCES %d\nPADDING %d\n%s",
              small ? half(p->window_radius) : radius,
-             small ? half(p->window_step) : p->window_step, p->sources, device->padding,
+             small ? half(p->window_step) : p->window_step, p->sources, orl_densify_padding(p),
              program_table[which].defines);
     return orl_prog_get(device->gpu, program_table[which].file, NULL, defines);
 }
@@ -199,10 +171,10 @@ static void pack_quads(const struct orl_image *luma, int padding, uint32_t *quad
     }
 }
 
-static enum orl_result upload_sources(struct densify_device *device, const struct densify_job *job,
+static enum orl_result upload_sources(const struct densify_device *device, const struct densify_job *job,
                                       struct level *level)
 {
-    int count = job->plan->count, pad = device->padding;
+    int count = job->plan->count, pad = orl_densify_padding(device->params);
     struct orl_tex_params params = {.layers = count, .format = GL_R32UI,
                                     .tag = "densify sources"};
     for (int k = 0; k < count; k++) {
@@ -325,8 +297,8 @@ static void set_block(const struct densify_device *device, const struct densify_
         block->extent[k][2] = (float)job->plan->sources[k].prior;
         block->extent[k][3] = (float)(1 << (shrunk - job->finest));
         // Texel centres are at whole numbers, offset by the padding.
-        source.camera.cx += device->padding - 0.5;
-        source.camera.cy += device->padding - 0.5;
+        source.camera.cx += orl_densify_padding(device->params) - 0.5;
+        source.camera.cy += orl_densify_padding(device->params) - 0.5;
         orl_densify_transfer(&source, &ref, &block->forward[3 * k]);
     }
     const struct orl_camera *c = &ref.camera;
@@ -348,7 +320,7 @@ static void set_block(const struct densify_device *device, const struct densify_
 
 // --- dispatch ---
 
-static enum orl_result run(struct densify_device *device, const struct densify_job *job,
+static enum orl_result run(const struct densify_device *device, const struct densify_job *job,
                            struct level *level, enum program which, struct orl_tex *extra,
                            double done)
 {
@@ -381,7 +353,7 @@ static enum orl_result run(struct densify_device *device, const struct densify_j
     return result;
 }
 
-static enum orl_result sweep(struct densify_device *device, const struct densify_job *job,
+static enum orl_result sweep(const struct densify_device *device, const struct densify_job *job,
                              struct level *level, enum program which, double done)
 {
     for (int color = 0; color < 2; color++) {
@@ -400,14 +372,12 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
     size_t count = (size_t)width * (size_t)height;
     float *pixels = orl_array(log, count, 4 * sizeof *pixels);
     ORL_TRY_MEMORY(pixels);
-    enum orl_result result = orl_image_init(log, &maps->depth, width, height, 1, ORL_PIXEL_F32);
-    ORL_THEN(result, orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32));
-    ORL_THEN(result, orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32));
-    if (result != ORL_OK)
-        goto end;
-    orl_tex_read(tex, 0, GL_RGBA, GL_FLOAT, count * 4 * sizeof *pixels, pixels);
-    result = orl_gpu_finish(gpu);
-    for (size_t i = 0; i < count; i++) {
+    enum orl_result result = orl_densify_maps_init(log, width, height, maps);
+    if (result == ORL_OK) {
+        orl_tex_read(tex, 0, GL_RGBA, GL_FLOAT, count * 4 * sizeof *pixels, pixels);
+        result = orl_gpu_finish(gpu);
+    }
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
         const float *n = &pixels[4 * i];
         float confidence = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         for (int k = 0; k < 3 && confidence > 0.0f; k++)
@@ -415,14 +385,11 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
         maps->confidence.f32[i] = confidence;
         maps->depth.f32[i] = n[3];
     }
-end:
     free(pixels);
-    if (result != ORL_OK)
-        orl_densify_maps_finish(maps);
     return result;
 }
 
-static enum orl_result finish(struct densify_device *device, const struct densify_job *job,
+static enum orl_result finish(const struct densify_device *device, const struct densify_job *job,
                               struct level *level, enum program which, struct densify_maps *maps)
 {
     struct orl_tex *out = NULL;
@@ -436,7 +403,7 @@ static enum orl_result finish(struct densify_device *device, const struct densif
     return result;
 }
 
-static enum orl_result level_open(struct densify_device *device, const struct densify_job *job,
+static enum orl_result level_open(const struct densify_device *device, const struct densify_job *job,
                                   struct level *level)
 {
     set_block(device, job, level);
@@ -457,16 +424,16 @@ static void set_steps(struct level *level, float pixels, float normal, int numbe
     level->block.tune[1] = fmaxf(normal * exp2f((float)-number), 0.05f);
 }
 
-static enum orl_result sweeps_coarsest(struct densify_device *device, const struct densify_job *job,
+static enum orl_result sweeps_coarsest(const struct densify_device *device, const struct densify_job *job,
                                        struct level *level, double share)
 {
-    int count = device->params.iterations + 2;
+    int count = device->params->iterations + 2;
     level->block.run[3] = RANDOM_TRIES;
     enum orl_result result = upload_seeds(device->gpu, job, level);
     ORL_THEN(result, run(device, job, level, INIT_RANDOM, level->extra, 0.0));
     level->block.tests[0] = 8;
     level->block.tests[1] = 6;
-    level->block.tests[2] = least(VIEWS_COARSE, device->params.sources);
+    level->block.tests[2] = least(VIEWS_COARSE, device->params->sources);
     for (int i = 0; i < count && result == ORL_OK; i++) {
         set_steps(level, 4.0f, 0.5f, i);
         result = sweep(device, job, level, SWEEP, share * (i + 1) / count);
@@ -474,17 +441,17 @@ static enum orl_result sweeps_coarsest(struct densify_device *device, const stru
     return result;
 }
 
-static enum orl_result sweeps_finer(struct densify_device *device, const struct densify_job *job,
+static enum orl_result sweeps_finer(const struct densify_device *device, const struct densify_job *job,
                                     struct level *level, struct orl_tex *coarse, double begin,
                                     double end)
 {
-    int count = (device->params.iterations + 1) / 2;
+    int count = (device->params->iterations + 1) / 2;
     bool fine = level->number <= job->finest + 1;
     level->block.run[3] = 1;
     enum orl_result result = run(device, job, level, fine ? INIT_FINE : INIT_COARSE, coarse, begin);
     level->block.tests[0] = 4;
     level->block.tests[1] = 4;
-    level->block.tests[2] = least(VIEWS_FINE, device->params.sources);
+    level->block.tests[2] = least(VIEWS_FINE, device->params->sources);
     for (int i = 0; i < count && result == ORL_OK; i++) {
         set_steps(level, 1.0f, 0.3f, i);
         result = sweep(device, job, level, fine ? SWEEP_FINE : SWEEP,
@@ -493,7 +460,7 @@ static enum orl_result sweeps_finer(struct densify_device *device, const struct 
     return result;
 }
 
-enum orl_result orl_densify_photometric(struct densify_device *device,
+enum orl_result orl_densify_photometric(const struct densify_device *device,
                                         const struct densify_job *job,
                                         struct densify_maps *maps)
 {
@@ -524,25 +491,22 @@ enum orl_result orl_densify_photometric(struct densify_device *device,
     return result;
 }
 
-enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
+enum orl_result orl_densify_geometric(const struct densify_device *device, const struct densify_job *job,
                                       struct densify_maps *maps)
 {
     struct level level = {.number = job->finest};
     enum orl_result result = level_open(device, job, &level);
     ORL_THEN(result, upload_source_depths(device->gpu, job, &level));
     ORL_THEN(result, upload_start(device->gpu, job, &level));
-    if (result != ORL_OK)
-        goto end;
     level.block.run[1] = 1000 * (DENSIFY_LEVELS_MAX + job->draw);
     level.block.run[3] = 1;
-    result = run(device, job, &level, INIT_MAPS, level.extra, 0.2);
+    ORL_THEN(result, run(device, job, &level, INIT_MAPS, level.extra, 0.2));
     level.block.tests[0] = 6;
     level.block.tests[1] = 1;
-    level.block.tests[2] = least(VIEWS_FINE, device->params.sources);
+    level.block.tests[2] = least(VIEWS_FINE, device->params->sources);
     set_steps(&level, 0.5f, 0.15f, 0);
     ORL_THEN(result, sweep(device, job, &level, SWEEP_GEOMETRIC, 0.9));
     ORL_THEN(result, finish(device, job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps));
-end:
     level_finish(device->gpu, &level);
     return result;
 }

@@ -28,6 +28,7 @@ struct densify_photos {
     struct orl_view *views; // owned
 };
 
+// On success and failure alike, the caller must call orl_densify_photos_finish.
 enum orl_result orl_densify_photos_init(const struct orl_log *log,
                                         const struct orl_colmap_model *model,
                                         const struct orl_names *names,
@@ -37,8 +38,8 @@ static inline const char *densify_photo_name(const struct densify_photos *photos
 {
     return photos->model->images[photos->images[photo]].name;
 }
-// Makes the plans of all photographs, which the caller releases with free(). Photographs without
-// sources have count 0.
+// Makes the plans of all photographs, which the caller releases with free(), also after a failure.
+// Photographs without sources have count 0.
 enum orl_result orl_densify_plans_make(const struct orl_log *log,
                                        const struct densify_photos *photos, int sources,
                                        struct densify_plan **plans);
@@ -91,35 +92,37 @@ struct densify_pyramid {
     int count;
     struct orl_camera camera; // of level 0
 };
-enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
-                                         const struct orl_camera *camera,
-                                         struct densify_pyramid *pyramid);
 void orl_densify_pyramid_finish(struct densify_pyramid *pyramid);
 struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level);
 
-// A cache of decoded photographs, filled while memory lasts. A pyramid stays valid at least until
-// the next turn. `photos` and `images_dir` must outlive the cache.
-struct densify_cache;
-enum orl_result orl_densify_cache_create(const struct orl_log *log,
-                                         const struct densify_photos *photos,
-                                         const char *images_dir, struct densify_cache **out);
-void orl_densify_cache_destroy(struct densify_cache **cache);
-void orl_densify_cache_turn(struct densify_cache *cache);
+// A cache of decoded photographs, filled while memory lasts; it begins with the first three members
+// alone. A pyramid stays valid at least until `turn` is raised.
+struct densify_cache {
+    const struct orl_log *log;
+    const struct densify_photos *photos;
+    const char *images_dir;
+    struct densify_cache_entry *entries; // owned; of each photograph
+    uint64_t turn;
+    size_t bytes;
+};
+void orl_densify_cache_finish(struct densify_cache *cache);
 enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
                                       const struct densify_pyramid **pyramid) ORL_CHECK_RESULT;
 
 // --- one photograph on the device ---
 
-struct densify_device;
-enum orl_result orl_densify_device_create(struct orl_gpu *gpu,
-                                          const struct orl_densify_params *params,
-                                          struct densify_device **out);
-void orl_densify_device_destroy(struct densify_device **device);
+struct densify_device {
+    struct orl_gpu *gpu;
+    const struct orl_densify_params *params;
+};
 
 struct densify_maps {
     struct orl_image depth, normal; // one and three channels
     struct orl_image confidence;    // (0, 1] where there is depth
 };
+// On success and failure alike, the caller must call orl_densify_maps_finish.
+enum orl_result orl_densify_maps_init(const struct orl_log *log, int width, int height,
+                                      struct densify_maps *maps) ORL_CHECK_RESULT;
 void orl_densify_maps_finish(struct densify_maps *maps);
 
 struct densify_job {
@@ -144,13 +147,13 @@ struct densify_job {
 bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y);
 
 // Matches from the coarsest to the finest level and keeps only the depths that match well.
-enum orl_result orl_densify_photometric(struct densify_device *device,
+enum orl_result orl_densify_photometric(const struct densify_device *device,
                                         const struct densify_job *job,
                                         struct densify_maps *maps);
 // Refines job->start at its size with the sources' depths. Keeps only depths that match well and
 // agree with a source.
-enum orl_result orl_densify_geometric(struct densify_device *device, const struct densify_job *job,
-                                      struct densify_maps *maps);
+enum orl_result orl_densify_geometric(const struct densify_device *device,
+                                      const struct densify_job *job, struct densify_maps *maps);
 
 // Fills holes in plain surfaces without texture, where the planes of several directions agree and
 // the photograph shows no edge on the way. Belongs to the last pass.
@@ -158,11 +161,10 @@ enum orl_result orl_densify_complete(const struct orl_log *log, const struct den
                                      struct densify_maps *maps);
 
 // Removes connected pieces of fewer than `least` pixels. Neighbours are connected when one is off
-// the other's plane by less than `tolerance` of its depth.
+// the other's plane by less than a hundredth of its depth.
 enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
                                             const struct orl_camera *camera,
-                                            struct densify_maps *maps, size_t least,
-                                            float tolerance);
+                                            struct densify_maps *maps, size_t least);
 
 // Removes depth that reaches past an outline: near a step to something farther, of pixels of which
 // the stereo is not sure and which look like what is farther. `camera`: of the maps' size; luma: the

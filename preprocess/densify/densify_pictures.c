@@ -21,26 +21,17 @@ static enum orl_result halve(const struct orl_log *log, const struct orl_image *
     return ORL_OK;
 }
 
-enum orl_result orl_densify_pyramid_read(const struct orl_log *log, const char *path,
-                                         const struct orl_camera *camera,
-                                         struct densify_pyramid *pyramid)
+// `pyramid` is zeroed. On success and failure alike, the caller must call orl_densify_pyramid_finish.
+static enum orl_result read_pyramid(const struct orl_log *log, const char *path,
+                                    const struct orl_camera *camera,
+                                    struct densify_pyramid *pyramid)
 {
-    memset(pyramid, 0, sizeof *pyramid);
     ORL_TRY(orl_picture_read(log, path, 1, &pyramid->levels[0]));
     const struct orl_image *picture = &pyramid->levels[0];
     pyramid->camera = orl_camera_resized(camera, picture->width, picture->height);
     pyramid->count = 1;
-    enum orl_result result = ORL_OK;
-    while (pyramid->count < DENSIFY_LEVELS_MAX &&
-           pyramid->levels[pyramid->count - 1].width >= 4 &&
-           pyramid->levels[pyramid->count - 1].height >= 4) {
-        result = halve(log, &pyramid->levels[pyramid->count - 1], &pyramid->levels[pyramid->count]);
-        if (result != ORL_OK) {
-            orl_densify_pyramid_finish(pyramid);
-            return result;
-        }
-        pyramid->count++;
-    }
+    for (; pyramid->count < DENSIFY_LEVELS_MAX && picture->width >= 4 && picture->height >= 4; picture++)
+        ORL_TRY(halve(log, picture, &pyramid->levels[pyramid->count++]));
     return ORL_OK;
 }
 
@@ -62,6 +53,14 @@ struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int 
                                .cy = camera->cy * scale};
 }
 
+enum orl_result orl_densify_maps_init(const struct orl_log *log, int width, int height,
+                                      struct densify_maps *maps)
+{
+    ORL_TRY(orl_image_init(log, &maps->depth, width, height, 1, ORL_PIXEL_F32));
+    ORL_TRY(orl_image_init(log, &maps->normal, width, height, 3, ORL_PIXEL_F32));
+    return orl_image_init(log, &maps->confidence, width, height, 1, ORL_PIXEL_F32);
+}
+
 void orl_densify_maps_finish(struct densify_maps *maps)
 {
     orl_image_finish(&maps->depth);
@@ -74,52 +73,17 @@ void orl_densify_maps_finish(struct densify_maps *maps)
 // Above this size, only the pyramids of the current photograph are kept.
 static const size_t BYTES_MAX = (size_t)256 << 20;
 
-struct cache_entry {
+struct densify_cache_entry {
     struct densify_pyramid pyramid; // count 0: not loaded
     uint64_t turn;                  // turn of the last request
 };
 
-struct densify_cache {
-    const struct orl_log *log;
-    const struct densify_photos *photos;
-    const char *images_dir;
-    struct cache_entry *entries; // one per photograph
-    uint64_t turn;
-    size_t bytes;
-};
-
-enum orl_result orl_densify_cache_create(const struct orl_log *log,
-                                         const struct densify_photos *photos,
-                                         const char *images_dir, struct densify_cache **out)
+void orl_densify_cache_finish(struct densify_cache *cache)
 {
-    struct densify_cache *cache = orl_array(log, 1, sizeof *cache);
-    *out = NULL;
-    ORL_TRY_MEMORY(cache);
-    *cache = (struct densify_cache){.log = log, .photos = photos, .images_dir = images_dir};
-    cache->entries = orl_array(log, photos->count, sizeof *cache->entries);
-    if (!cache->entries) {
-        free(cache);
-        return ORL_ERR_MEMORY;
-    }
-    *out = cache;
-    return ORL_OK;
-}
-
-void orl_densify_cache_destroy(struct densify_cache **handle)
-{
-    struct densify_cache *cache = *handle;
-    if (!cache)
-        return;
-    for (size_t i = 0; i < cache->photos->count; i++)
+    for (size_t i = 0; cache->entries && i < cache->photos->count; i++)
         orl_densify_pyramid_finish(&cache->entries[i].pyramid);
     free(cache->entries);
-    free(cache);
-    *handle = NULL;
-}
-
-void orl_densify_cache_turn(struct densify_cache *cache)
-{
-    cache->turn++;
+    cache->entries = NULL;
 }
 
 static size_t pyramid_bytes(const struct densify_pyramid *pyramid)
@@ -134,9 +98,9 @@ static size_t pyramid_bytes(const struct densify_pyramid *pyramid)
 static void make_room(struct densify_cache *cache)
 {
     while (cache->bytes > BYTES_MAX) {
-        struct cache_entry *oldest = NULL;
+        struct densify_cache_entry *oldest = NULL;
         for (size_t i = 0; i < cache->photos->count; i++) {
-            struct cache_entry *entry = &cache->entries[i];
+            struct densify_cache_entry *entry = &cache->entries[i];
             if (entry->pyramid.count && entry->turn < cache->turn &&
                 (!oldest || entry->turn < oldest->turn))
                 oldest = entry;
@@ -151,10 +115,13 @@ static void make_room(struct densify_cache *cache)
 enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
                                       const struct densify_pyramid **pyramid)
 {
-    struct cache_entry *entry = &cache->entries[photo];
+    if (!cache->entries)
+        cache->entries = orl_array(cache->log, cache->photos->count, sizeof *cache->entries);
+    ORL_TRY_MEMORY(cache->entries);
+    struct densify_cache_entry *entry = &cache->entries[photo];
     enum orl_result result = ORL_OK;
     if (!entry->pyramid.count) {
-        result = orl_densify_pyramid_read(
+        result = read_pyramid(
             cache->log, ORL_PATH(cache->images_dir, "%s", densify_photo_name(cache->photos, photo)),
             &cache->photos->views[photo].camera, &entry->pyramid);
         cache->bytes += pyramid_bytes(&entry->pyramid);
@@ -168,16 +135,16 @@ enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
 // --- speckles ---
 
 enum { REACH = 2 }; // greatest step within a piece, pixels: pinholes do not cut it
+static const float TOLERANCE = 0.01f;
 
 struct flood {
     const struct densify_maps *maps;
     const struct orl_camera *camera;
     uint8_t *seen;
     size_t *queue;
-    float tolerance;
 };
 
-// True when a pixel is off the other's plane by less than `tolerance` of its depth. Depths alone
+// True when a pixel is off the other's plane by less than TOLERANCE of its depth. Depths alone
 // are too strict: on ground seen at a grazing angle they differ by several percent from row to row.
 static bool connected(const struct flood *flood, size_t from, size_t to)
 {
@@ -194,7 +161,7 @@ static bool connected(const struct flood *flood, size_t from, size_t to)
     }
     for (int i = 0; i < 3; i++)
         off += n[i] * (point[1][i] - point[0][i]);
-    return depth[to] > 0.0f && fabsf(off) < flood->tolerance * depth[from];
+    return depth[to] > 0.0f && fabsf(off) < TOLERANCE * depth[from];
 }
 
 // Queues the piece that holds `start`; returns its size.
@@ -222,17 +189,14 @@ static size_t flood_from(struct flood *flood, size_t start)
 
 enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
                                             const struct orl_camera *camera,
-                                            struct densify_maps *maps, size_t least,
-                                            float tolerance)
+                                            struct densify_maps *maps, size_t least)
 {
     size_t count = (size_t)maps->depth.width * (size_t)maps->depth.height;
-    struct flood flood = {.maps = maps, .camera = camera, .tolerance = tolerance};
-    enum orl_result result = ORL_ERR_MEMORY;
+    struct flood flood = {.maps = maps, .camera = camera};
     flood.seen = orl_array(log, count, sizeof *flood.seen);
     flood.queue = orl_array(log, count, sizeof *flood.queue);
-    if (!flood.seen || !flood.queue)
-        goto end;
-    for (size_t start = 0; start < count; start++) {
+    enum orl_result result = flood.seen && flood.queue ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t start = 0; result == ORL_OK && start < count; start++) {
         if (flood.seen[start] || !(maps->depth.f32[start] > 0.0f))
             continue;
         size_t piece = flood_from(&flood, start);
@@ -242,8 +206,6 @@ enum orl_result orl_densify_remove_speckles(const struct orl_log *log,
             memset(&maps->normal.f32[3 * flood.queue[i]], 0, 3 * sizeof(float));
         }
     }
-    result = ORL_OK;
-end:
     free(flood.seen);
     free(flood.queue);
     return result;

@@ -15,12 +15,10 @@ enum orl_result orl_densify_photos_init(const struct orl_log *log,
                                         const struct orl_names *names,
                                         struct densify_photos *photos)
 {
-    enum orl_result result = ORL_ERR_MEMORY;
     *photos = (struct densify_photos){.model = model};
     photos->images = orl_array(log, model->image_count, sizeof *photos->images);
     photos->views = orl_array(log, model->image_count, sizeof *photos->views);
-    if (!photos->images || !photos->views)
-        goto fail;
+    ORL_TRY_MEMORY(photos->images && photos->views);
     for (size_t i = 0; i < model->image_count; i++) {
         const struct orl_colmap_image *image = &model->images[i];
         if (names && !orl_names_contain(names, image->name))
@@ -44,14 +42,8 @@ enum orl_result orl_densify_photos_init(const struct orl_log *log,
         if (!found)
             orl_logf(log, ORL_LOG_WARNING, "%s: not in the model; left out", names->items[k]);
     }
-    if (!photos->count) {
-        result = orl_fail(log, ORL_ERR_DATA, "the sparse model has none of the photographs");
-        goto fail;
-    }
-    return ORL_OK;
-fail:
-    orl_densify_photos_finish(photos);
-    return result;
+    return photos->count ? ORL_OK
+                         : orl_fail(log, ORL_ERR_DATA, "the sparse model has none of the photographs");
 }
 
 void orl_densify_photos_finish(struct densify_photos *photos)
@@ -64,16 +56,9 @@ void orl_densify_photos_finish(struct densify_photos *photos)
 // --- points and the photographs that see them ---
 
 struct point_views {
-    size_t *first;  // point_count + 1 offsets into photo
+    size_t *first;   // owned; point_count + 1 offsets into photo
     uint32_t *photo; // owned
 };
-
-static void point_views_finish(struct point_views *views)
-{
-    free(views->first);
-    free(views->photo);
-    *views = (struct point_views){0};
-}
 
 static enum orl_result point_views_init(const struct orl_log *log,
                                         const struct densify_photos *photos,
@@ -81,7 +66,6 @@ static enum orl_result point_views_init(const struct orl_log *log,
 {
     const struct orl_colmap_model *model = photos->model;
     size_t total = 0;
-    memset(views, 0, sizeof *views);
     views->first = orl_array(log, model->point_count + 2, sizeof *views->first);
     ORL_TRY_MEMORY(views->first);
     for (size_t i = 0; i < photos->count; i++) {
@@ -91,10 +75,7 @@ static enum orl_result point_views_init(const struct orl_log *log,
         total += image->point_count;
     }
     views->photo = orl_array(log, total, sizeof *views->photo);
-    if (!views->photo) {
-        point_views_finish(views);
-        return ORL_ERR_MEMORY;
-    }
+    ORL_TRY_MEMORY(views->photo);
     // Counting sort: after filling, first[p + 1] is where point p + 1 begins.
     for (size_t p = 2; p < model->point_count + 2; p++)
         views->first[p] += views->first[p - 1];
@@ -222,7 +203,6 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
                                        struct densify_plan **plans)
 {
     struct plan_scratch scratch = {0};
-    enum orl_result result = ORL_ERR_MEMORY;
     *plans = orl_array(log, photos->count, sizeof **plans);
     scratch.tallies = orl_array(log, photos->count, sizeof *scratch.tallies);
     scratch.centres = orl_array(log, photos->count, sizeof *scratch.centres);
@@ -232,24 +212,17 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
         max_points = points > max_points ? points : max_points;
     }
     scratch.depths = orl_array(log, max_points, sizeof *scratch.depths);
-    if (!*plans || !scratch.tallies || !scratch.centres || !scratch.depths)
-        goto end;
-    result = point_views_init(log, photos, &scratch.seen_by);
-    if (result != ORL_OK)
-        goto end;
-    for (size_t i = 0; i < photos->count; i++)
+    enum orl_result result = *plans && scratch.tallies && scratch.centres && scratch.depths
+                                 ? point_views_init(log, photos, &scratch.seen_by) : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < photos->count; i++)
         orl_pose_centre(&photos->views[i].cam_from_world, scratch.centres[i]);
-    for (size_t i = 0; i < photos->count; i++)
+    for (size_t i = 0; result == ORL_OK && i < photos->count; i++)
         make_plan(photos, i, sources, &scratch, &(*plans)[i]);
-end:
-    point_views_finish(&scratch.seen_by);
+    free(scratch.seen_by.first);
+    free(scratch.seen_by.photo);
     free(scratch.tallies);
     free(scratch.centres);
     free(scratch.depths);
-    if (result != ORL_OK) {
-        free(*plans);
-        *plans = NULL;
-    }
     return result;
 }
 
@@ -298,8 +271,8 @@ enum orl_result orl_densify_part_sources(const struct orl_log *log,
 {
     struct densify_photos photos;
     struct densify_plan *plans = NULL;
-    ORL_TRY(orl_densify_photos_init(log, model, names, &photos));
-    enum orl_result result = orl_densify_plans_make(log, &photos, sources, &plans);
+    enum orl_result result = orl_densify_photos_init(log, model, names, &photos);
+    ORL_THEN(result, orl_densify_plans_make(log, &photos, sources, &plans));
     for (size_t i = 0; result == ORL_OK && i < photos.count; i++)
         for (int k = 0; k < plans[i].count; k++)
             reads[part_of(i, photos.count, (size_t)parts) * (size_t)parts +
