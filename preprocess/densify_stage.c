@@ -128,12 +128,11 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
 
 static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
 {
-    struct orl_colmap_args args = {0};
-    orl_colmap_arg(&args, "--workspace_path", "%s", job->dir);
-    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
-    orl_colmap_arg(&args, "--PatchMatchStereo.geom_consistency", "1");
-    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "patch_match_stereo", .step = "densify", .share = 1, .total = 1}, &args);
+    struct orl_colmap_run run = {.command = "patch_match_stereo", .step = "densify"};
+    orl_colmap_arg(&run, "--workspace_path", "%s", job->dir);
+    orl_colmap_arg(&run, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(&run, "--PatchMatchStereo.geom_consistency", "1");
+    enum orl_result result = orl_job_colmap(job, &run);
     ORL_THEN(result, orl_flush(job->log, ORL_PATH(job->dir, "stereo")));
     json_object_set_new(record, "tool",
                         json_sprintf("COLMAP %s patch_match_stereo", job->colmap_version));

@@ -64,20 +64,19 @@ struct paths {
 
 static enum orl_result find_features(struct orl_job *job, const struct paths *paths)
 {
-    struct orl_colmap_args args = {0};
-    orl_colmap_arg(&args, "--database_path", "%s", paths->database);
-    orl_colmap_arg(&args, "--image_path", "%s", paths->images);
-    orl_colmap_arg(&args, "--image_list_path", "%s", paths->list);
-    orl_colmap_arg(&args, "--ImageReader.camera_model", "PINHOLE");
+    struct orl_colmap_run run = {.command = "feature_extractor", .step = "features"};
+    orl_colmap_arg(&run, "--database_path", "%s", paths->database);
+    orl_colmap_arg(&run, "--image_path", "%s", paths->images);
+    orl_colmap_arg(&run, "--image_list_path", "%s", paths->list);
+    orl_colmap_arg(&run, "--ImageReader.camera_model", "PINHOLE");
     // As the model that is triangulated has them; otherwise photographs whose EXIF names one camera
     // share it.
-    orl_colmap_arg(&args, "--ImageReader.single_camera_per_image", "1");
-    orl_colmap_arg(&args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda);
+    orl_colmap_arg(&run, "--ImageReader.single_camera_per_image", "1");
+    orl_colmap_arg(&run, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda);
     // COLMAP's database numbers photographs as they are finished, and triangulation requires that
     // the known cameras have the same numbers. With one thread, both are in order of name.
-    orl_colmap_arg(&args, "--SiftExtraction.num_threads", "1");
-    return orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "feature_extractor", .step = "features", .share = 1, .total = 1}, &args);
+    orl_colmap_arg(&run, "--SiftExtraction.num_threads", "1");
+    return orl_job_colmap(job, &run);
 }
 
 static enum orl_result match(struct orl_job *job, const struct import_job *import)
@@ -120,16 +119,15 @@ static enum orl_result leave_out_unconnected(struct orl_job *job, const struct p
 
 static enum orl_result triangulate(struct orl_job *job, const struct paths *paths)
 {
-    struct orl_colmap_args args = {0};
-    orl_colmap_arg(&args, "--database_path", "%s", paths->database);
-    orl_colmap_arg(&args, "--image_path", "%s", paths->images);
-    orl_colmap_arg(&args, "--input_path", "%s", paths->in);
-    orl_colmap_arg(&args, "--output_path", "%s", paths->out);
     // COLMAP 3.8 stops with the first message when it triangulates no point, and 3.10 with the other
     // when no photographs match; take_points reports that clearly.
-    return orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "point_triangulator", .step = "triangulate", .share = 1, .total = 1,
-        .tolerated = {"bundle_adjuster.Solve", "LoadDatabase"}}, &args);
+    struct orl_colmap_run run = {.command = "point_triangulator", .step = "triangulate",
+                                 .tolerated = {"bundle_adjuster.Solve", "LoadDatabase"}};
+    orl_colmap_arg(&run, "--database_path", "%s", paths->database);
+    orl_colmap_arg(&run, "--image_path", "%s", paths->images);
+    orl_colmap_arg(&run, "--input_path", "%s", paths->in);
+    orl_colmap_arg(&run, "--output_path", "%s", paths->out);
+    return orl_job_colmap(job, &run);
 }
 
 static enum orl_result write_train_list(const struct orl_job *job, const char *path)

@@ -78,21 +78,21 @@ enum orl_result orl_features_link_masks(const struct orl_job *job)
     return ORL_OK;
 }
 
-static void feature_settings(const struct orl_job *job, bool costly, struct orl_colmap_args *args)
+static void feature_settings(const struct orl_job *job, bool costly, struct orl_colmap_run *run)
 {
     static const int sizes[] = {[ORL_QUALITY_DRAFT] = 1600, [ORL_QUALITY_STANDARD] = 3200,
                                 [ORL_QUALITY_HIGH] = 3200};
     static const int counts[] = {[ORL_QUALITY_DRAFT] = 4096, [ORL_QUALITY_STANDARD] = 8192,
                                  [ORL_QUALITY_HIGH] = 16384};
     enum orl_quality quality = job->params->quality;
-    orl_colmap_arg(args, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda && !costly);
-    orl_colmap_arg(args, "--SiftExtraction.max_image_size", "%d", sizes[quality]);
-    orl_colmap_arg(args, "--SiftExtraction.max_num_features", "%d",
+    orl_colmap_arg(run, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda && !costly);
+    orl_colmap_arg(run, "--SiftExtraction.max_image_size", "%d", sizes[quality]);
+    orl_colmap_arg(run, "--SiftExtraction.max_num_features", "%d",
                    counts[quality] * (costly ? 2 : 1));
     if (costly) {
-        orl_colmap_arg(args, "--SiftExtraction.estimate_affine_shape", "1");
-        orl_colmap_arg(args, "--SiftExtraction.domain_size_pooling", "1");
-        orl_colmap_arg(args, "--SiftExtraction.peak_threshold", "0.004");
+        orl_colmap_arg(run, "--SiftExtraction.estimate_affine_shape", "1");
+        orl_colmap_arg(run, "--SiftExtraction.domain_size_pooling", "1");
+        orl_colmap_arg(run, "--SiftExtraction.peak_threshold", "0.004");
     }
 }
 
@@ -101,26 +101,25 @@ static void feature_settings(const struct orl_job *job, bool costly, struct orl_
 static enum orl_result extract(struct orl_job *job, const struct orl_features_run *run,
                                const struct orl_names *names, int size, double done, double total)
 {
-    struct orl_colmap_args args = {0};
+    struct orl_colmap_run colmap = {.command = "feature_extractor", .step = "features", .done = done,
+                                    .share = (double)names->count, .total = total};
     const char *list = ORL_PATH(job->dir, "%s.txt", run->database);
     bool normalised = orl_job_has(job, ORL_CALIBRATE_NORMALISED);
     ORL_TRY(orl_job_write_list(job, list, names));
     // More parameters need more photographs to determine them.
     bool rich = size >= 8 && job->params->quality == ORL_QUALITY_HIGH;
-    orl_colmap_arg(&args, "--database_path", "%s/%s.db", job->dir, run->database);
-    orl_colmap_arg(&args, "--image_path", "%s/%s", job->dir,
+    orl_colmap_arg(&colmap, "--database_path", "%s/%s.db", job->dir, run->database);
+    orl_colmap_arg(&colmap, "--image_path", "%s/%s", job->dir,
                    normalised ? ORL_CALIBRATE_NORMALISED : ".oriel/photos");
-    orl_colmap_arg(&args, "--image_list_path", "%s", list);
-    orl_colmap_arg(&args, "--random_seed", "%u", job->params->seed);
-    orl_colmap_arg(&args, size > 1 ? "--ImageReader.single_camera"
+    orl_colmap_arg(&colmap, "--image_list_path", "%s", list);
+    orl_colmap_arg(&colmap, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(&colmap, size > 1 ? "--ImageReader.single_camera"
                                    : "--ImageReader.single_camera_per_image", "1");
-    orl_colmap_arg(&args, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
+    orl_colmap_arg(&colmap, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
     if (job->params->masks_dir)
-        orl_colmap_arg(&args, "--ImageReader.mask_path", "%s/" MASKS, job->dir);
-    feature_settings(job, run->costly, &args);
-    return orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "feature_extractor", .step = "features", .done = done,
-        .share = (double)names->count, .total = total}, &args);
+        orl_colmap_arg(&colmap, "--ImageReader.mask_path", "%s/" MASKS, job->dir);
+    feature_settings(job, run->costly, &colmap);
+    return orl_job_colmap(job, &colmap);
 }
 
 // Names of the photographs of a shared camera, or of all cameras that have one photograph, that lie

@@ -25,29 +25,28 @@ enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs)
 }
 
 static void matcher_settings(const struct orl_job *job, const char *database, bool guided,
-                             struct orl_colmap_args *args)
+                             struct orl_colmap_run *run)
 {
-    orl_colmap_arg(args, "--database_path", "%s/%s", job->dir, database);
-    orl_colmap_arg(args, "--random_seed", "%u", job->params->seed);
-    orl_colmap_arg(args, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
-    orl_colmap_arg(args, "--SiftMatching.guided_matching", "%d", guided);
+    orl_colmap_arg(run, "--database_path", "%s/%s", job->dir, database);
+    orl_colmap_arg(run, "--random_seed", "%u", job->params->seed);
+    orl_colmap_arg(run, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
+    orl_colmap_arg(run, "--SiftMatching.guided_matching", "%d", guided);
 }
 
 // Pairs that COLMAP chooses: all, or neighbours by name.
 static enum orl_result match_by_colmap(struct orl_job *job, bool sequential, bool guided)
 {
-    struct orl_colmap_args args = {0};
-    matcher_settings(job, ORL_CALIBRATE_DATABASE, guided, &args);
+    struct orl_colmap_run run = {.command = sequential ? "sequential_matcher" : "exhaustive_matcher",
+                                 .step = "matching"};
+    matcher_settings(job, ORL_CALIBRATE_DATABASE, guided, &run);
     if (sequential) {
-        orl_colmap_arg(&args, "--SequentialMatching.overlap", "20");
+        orl_colmap_arg(&run, "--SequentialMatching.overlap", "20");
     } else {
         // Smaller blocks than COLMAP's 50 show progress; their cost is the same.
         size_t block = job->source_count / 8;
-        orl_colmap_arg(&args, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
+        orl_colmap_arg(&run, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
     }
-    return orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = sequential ? "sequential_matcher" : "exhaustive_matcher", .step = "matching",
-        .share = 1, .total = 1}, &args);
+    return orl_job_colmap(job, &run);
 }
 
 // --- pairs that Oriel chooses ---
@@ -114,21 +113,20 @@ static enum orl_result match_features(const struct orl_job *job, const char *dat
 static enum orl_result verify(struct orl_job *job, const char *name,
                               const struct orl_pair_list *list, size_t first, size_t count)
 {
-    struct orl_colmap_args args = {0};
     struct orl_names lines = {0};
     double share = job->colmap_cuda ? 1 : VERIFYING;
+    struct orl_colmap_run run = {.command = "matches_importer", .step = "matching",
+                                 .done = (double)first + (1 - share) * (double)count,
+                                 .share = share * (double)count, .total = (double)list->count};
     const char *path = ORL_PATH(job->dir, "%s.pairs.txt", name);
     enum orl_result result = name_pairs(job, list->items + first, count, &lines);
     ORL_THEN(result, orl_job_write_list(job, path, &lines));
     ORL_THEN(result, hide_spaces(job, name, true));
     if (result == ORL_OK) {
-        matcher_settings(job, name, false, &args);
-        orl_colmap_arg(&args, "--match_list_path", "%s", path);
-        orl_colmap_arg(&args, "--match_type", "pairs");
-        result = orl_job_colmap(job, &(struct orl_colmap_run){
-            .command = "matches_importer", .step = "matching",
-            .done = (double)first + (1 - share) * (double)count, .share = share * (double)count,
-            .total = (double)list->count}, &args);
+        matcher_settings(job, name, false, &run);
+        orl_colmap_arg(&run, "--match_list_path", "%s", path);
+        orl_colmap_arg(&run, "--match_type", "pairs");
+        result = orl_job_colmap(job, &run);
     }
     ORL_THEN(result, hide_spaces(job, name, false));
     orl_names_finish(&lines);

@@ -9,14 +9,13 @@
 
 static enum orl_result run_undistorter(struct orl_job *job)
 {
-    struct orl_colmap_args args = {0};
+    struct orl_colmap_run run = {.command = "image_undistorter", .step = "undistort"};
     ORL_TRY(orl_job_fresh_dir(job, WORK));
-    orl_colmap_arg(&args, "--image_path", "%s/.oriel/photos", job->dir);
-    orl_colmap_arg(&args, "--input_path", "%s/.oriel/calibrate/model", job->dir);
-    orl_colmap_arg(&args, "--output_path", "%s/" WORK, job->dir);
-    orl_colmap_arg(&args, "--max_image_size", "%d", orl_prepare_max_size(job->params));
-    return orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = "image_undistorter", .step = "undistort", .share = 1, .total = 1}, &args);
+    orl_colmap_arg(&run, "--image_path", "%s/.oriel/photos", job->dir);
+    orl_colmap_arg(&run, "--input_path", "%s/.oriel/calibrate/model", job->dir);
+    orl_colmap_arg(&run, "--output_path", "%s/" WORK, job->dir);
+    orl_colmap_arg(&run, "--max_image_size", "%d", orl_prepare_max_size(job->params));
+    return orl_job_colmap(job, &run);
 }
 
 // COLMAP makes all pictures as small as it is told, but leaves cameras whose distortion is exactly zero

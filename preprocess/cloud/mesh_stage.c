@@ -93,20 +93,18 @@ static enum orl_result run_mesher(struct orl_job *job, const char *input, const 
 {
     const struct detail detail = detail_of(job->params);
     bool poisson = job->params->mesh == ORL_MESH_POISSON;
-    struct orl_colmap_args args = {0};
-    orl_colmap_arg(&args, "--input_path", "%s", input);
-    orl_colmap_arg(&args, "--output_path", "%s", output);
+    struct orl_colmap_run run = {.command = poisson ? "poisson_mesher" : "delaunay_mesher", .step = "mesh"};
+    orl_colmap_arg(&run, "--input_path", "%s", input);
+    orl_colmap_arg(&run, "--output_path", "%s", output);
     if (poisson) {
-        orl_colmap_arg(&args, "--PoissonMeshing.depth", "%d", detail.depth);
-        orl_colmap_arg(&args, "--PoissonMeshing.trim", "%d", detail.trim);
+        orl_colmap_arg(&run, "--PoissonMeshing.depth", "%d", detail.depth);
+        orl_colmap_arg(&run, "--PoissonMeshing.trim", "%d", detail.trim);
         // With several threads the mesh depends on thread timing.
-        orl_colmap_arg(&args, "--PoissonMeshing.num_threads", "1");
+        orl_colmap_arg(&run, "--PoissonMeshing.num_threads", "1");
     } else {
-        orl_colmap_arg(&args, "--input_type", "sparse");
+        orl_colmap_arg(&run, "--input_type", "sparse");
     }
-    enum orl_result result = orl_job_colmap(job, &(struct orl_colmap_run){
-        .command = poisson ? "poisson_mesher" : "delaunay_mesher", .step = "mesh", .share = 1,
-        .total = 1}, &args);
+    enum orl_result result = orl_job_colmap(job, &run);
     if (result != ORL_OK && !poisson)
         orl_logf(job->log, ORL_LOG_ERROR, "delaunay needs a COLMAP that was built with CGAL; "
                  "--mesh poisson needs none");

@@ -5,35 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
 #include "core/process.h"
 
-void orl_colmap_arg(struct orl_colmap_args *args, const char *name, const char *format, ...)
+// Qt would look for a display without this variable.
+static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
+
+void orl_colmap_arg(struct orl_colmap_run *run, const char *name, const char *format, ...)
 {
-    char value[4096];
+    size_t room = sizeof run->text - run->used;
     va_list list;
     va_start(list, format);
-    int length = vsnprintf(value, sizeof value, format, list);
+    int length = vsnprintf(run->text + run->used, room, format, list);
     va_end(list);
-    if (length < 0 || (size_t)length >= sizeof value || args->count + 2 > ORL_COLMAP_ARGS_MAX) {
-        args->failed = true;
+    if (length < 0 || (size_t)length >= room || run->arg_count + 2 > ORL_COLMAP_ARGS_MAX) {
+        run->failed = true;
         return;
     }
-    const char *const texts[] = {name, value};
-    for (int i = 0; i < 2; i++) {
-        char *copy = orl_strdup(NULL, texts[i]);
-        if (copy)
-            args->items[args->count++] = copy;
-        else
-            args->failed = true;
-    }
-}
-
-static void args_finish(struct orl_colmap_args *args)
-{
-    for (size_t i = 0; i < args->count; i++)
-        free(args->items[i]);
-    memset(args, 0, sizeof *args);
+    run->args[run->arg_count++] = name;
+    run->args[run->arg_count++] = run->text + run->used;
+    run->used += (size_t)length + 1;
 }
 
 double orl_colmap_line_progress(const char *line, double total)
@@ -121,14 +111,16 @@ static void add_usage(struct orl_job *job, const char *command,
         json_object_set_new(job->programs, key, json_real(before + usage->cpu_s));
 }
 
-enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run *run,
-                               struct orl_colmap_args *args)
+enum orl_result orl_job_colmap(struct orl_job *job, struct orl_colmap_run *run)
 {
-    // Qt would look for a display without this variable.
-    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *argv[ORL_COLMAP_ARGS_MAX + 3] = {job->colmap, run->command};
-    for (size_t i = 0; i < args->count; i++)
-        argv[2 + i] = i % 2 ? args->items[i] : current_name(job, args->items[i]);
+    if (run->failed)
+        return orl_fail(job->log, ORL_ERR_MEMORY, "COLMAP %s: arguments too long, or no memory for them",
+                        run->command);
+    if (!run->total)
+        run->share = run->total = 1;
+    for (size_t i = 0; i < run->arg_count; i++)
+        argv[2 + i] = i % 2 ? run->args[i] : current_name(job, run->args[i]);
     const char *log_path = ORL_PATH(job->dir, "logs/colmap.log");
     struct watch watch = {.job = job, .run = run};
     struct orl_log held = {.level = ORL_LOG_ERROR, .print = hold_error, .priv = &watch};
@@ -136,11 +128,6 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
                                         .progress = job->progress, .line = watch_line,
                                         .line_priv = &watch, .env = env};
     struct orl_process_usage usage = {0};
-    if (args->failed) {
-        args_finish(args);
-        return orl_fail(job->log, ORL_ERR_MEMORY, "COLMAP %s: arguments too long, or no memory for them",
-                        run->command);
-    }
     if (run->done == 0)
         orl_progress_report(job->progress, run->step, 0, run->total, NULL);
     enum orl_result result = orl_process_run(&held, &params, &usage);
@@ -156,7 +143,6 @@ enum orl_result orl_job_colmap(struct orl_job *job, const struct orl_colmap_run 
             orl_logf(job->log, ORL_LOG_ERROR, "all of COLMAP's output is in %s", log_path);
         orl_job_hint_disk(job);
     }
-    args_finish(args);
     return result;
 }
 
@@ -183,7 +169,6 @@ enum orl_result orl_job_find_colmap(struct orl_job *job)
 {
     if (job->colmap_known)
         return ORL_OK;
-    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *chosen = getenv("ORIEL_COLMAP");
     job->colmap = chosen && *chosen ? chosen : "colmap";
     const char *const argv[] = {job->colmap, "help", NULL};
