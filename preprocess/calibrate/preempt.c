@@ -1,7 +1,5 @@
 #include "preprocess/calibrate/preempt.h"
 
-#include <stdatomic.h>
-
 #include "preprocess/job/threads.h"
 
 enum { COUNT = ORL_PREEMPT_FEATURES };
@@ -30,40 +28,24 @@ static int count_matches(const struct wide *a, const struct wide *b)
 enum { BLOCK = 256 }; // pairs that a thread takes at once
 
 struct work {
-    const struct orl_progress *progress;
     const struct orl_descriptors *photos;
     struct orl_preempt_pair *pairs;
     size_t count;
-    atomic_size_t next;
-    atomic_bool stop;
 };
 
-static void match_block(struct work *work, size_t start, struct wide *a, struct wide *b)
+static enum orl_result match_block(void *priv, size_t block)
 {
-    size_t end = start + BLOCK < work->count ? start + BLOCK : work->count;
+    const struct work *work = priv;
+    size_t start = block * BLOCK, end = start + BLOCK < work->count ? start + BLOCK : work->count;
+    struct wide a, b;
     for (size_t i = start; i < end; i++) {
         struct orl_preempt_pair *pair = &work->pairs[i];
         if (i == start || pair->a != pair[-1].a)
-            widen(&work->photos[pair->a], a);
-        widen(&work->photos[pair->b], b);
-        pair->matches = count_matches(a, b);
+            widen(&work->photos[pair->a], &a);
+        widen(&work->photos[pair->b], &b);
+        pair->matches = count_matches(&a, &b);
     }
-}
-
-// Of the threads, only the caller's reports progress.
-static void match_blocks(void *priv, bool caller)
-{
-    struct work *work = priv;
-    struct wide a, b;
-    size_t start;
-    while (!work->stop && (start = atomic_fetch_add(&work->next, BLOCK)) < work->count) {
-        match_block(work, start, &a, &b);
-        if (!caller)
-            continue;
-        orl_progress_report(work->progress, "pairs", 0.99 * (double)start, (double)work->count, NULL);
-        if (orl_progress_cancelled(work->progress))
-            work->stop = true;
-    }
+    return ORL_OK;
 }
 
 enum orl_result orl_preempt_match_all(const struct orl_log *log,
@@ -71,8 +53,10 @@ enum orl_result orl_preempt_match_all(const struct orl_log *log,
                                       const struct orl_descriptors *photos,
                                       struct orl_preempt_pair *pairs, size_t count)
 {
-    struct work work = {.progress = progress, .photos = photos, .pairs = pairs, .count = count};
+    struct work work = {photos, pairs, count};
+    size_t blocks = (count + BLOCK - 1) / BLOCK;
     orl_logf(log, ORL_LOG_DEBUG, "pairs: preemptive matching of %zu pairs", count);
-    orl_threads_run(count / BLOCK + 1, match_blocks, &work);
-    return work.stop ? ORL_ERR_CANCELLED : ORL_OK;
+    return orl_threads_each(&(struct orl_each){
+        .work = match_block, .priv = &work, .count = blocks, .progress = progress, .step = "pairs",
+        .share = 0.99 * (double)(blocks * BLOCK), .total = (double)count});
 }

@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/raw_matches.h"
 
-#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -14,17 +13,17 @@ struct found {
 
 struct work {
     const struct orl_log *log;
-    const struct orl_raw_matches_progress *progress;
     const struct orl_pair *pairs;
     size_t count;
     struct orl_features *photos; // owned; those of the pairs are filled
     struct found *found;         // owned; of each pair
-    atomic_size_t next;
-    atomic_bool stop, no_memory;
 };
 
-static bool match_pair(const struct work *work, size_t index)
+static enum orl_result match_pair(void *priv, size_t index)
 {
+    const struct work *work = priv;
+    if (work->found[index].there)
+        return ORL_OK;
     const struct orl_features *a = &work->photos[work->pairs[index].a];
     const struct orl_features *b = &work->photos[work->pairs[index].b];
     struct found *found = &work->found[index];
@@ -48,25 +47,7 @@ static bool match_pair(const struct work *work, size_t index)
     }
     free(wide);
     free(nearest);
-    return ok;
-}
-
-// Of the threads, only the caller's reports progress.
-static void match_pairs(void *priv, bool caller)
-{
-    struct work *work = priv;
-    const struct orl_raw_matches_progress *p = work->progress;
-    size_t i;
-    while (!work->stop && !work->no_memory && (i = atomic_fetch_add(&work->next, 1)) < work->count) {
-        if (!work->found[i].there && !match_pair(work, i))
-            work->no_memory = true;
-        if (!caller)
-            continue;
-        orl_progress_report(p->progress, "matching",
-                            p->done + p->share * (double)i / (double)work->count, p->total, NULL);
-        if (orl_progress_cancelled(p->progress))
-            work->stop = true;
-    }
+    return ok ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 static enum orl_result read_features(struct work *work, struct orl_database *db,
@@ -100,16 +81,18 @@ enum orl_result orl_raw_matches_write(const struct orl_log *log,
                                       size_t photo_count, const struct orl_pair *pairs,
                                       size_t count)
 {
-    struct work work = {.log = log, .progress = progress, .pairs = pairs, .count = count};
+    struct work work = {.log = log, .pairs = pairs, .count = count};
     work.photos = orl_array(log, photo_count, sizeof *work.photos);
     work.found = orl_array(log, count, sizeof *work.found);
     enum orl_result result = work.photos && work.found ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, read_features(&work, db, names));
     if (result == ORL_OK) {
-        orl_threads_run(count, match_pairs, &work);
-        result = work.no_memory ? orl_fail(log, ORL_ERR_MEMORY, "no memory to match features")
-                 : work.stop    ? ORL_ERR_CANCELLED
-                                : ORL_OK;
+        result = orl_threads_each(&(struct orl_each){
+            .work = match_pair, .priv = &work, .count = count, .progress = progress->progress,
+            .step = "matching", .done = progress->done, .share = progress->share,
+            .total = progress->total});
+        if (result == ORL_ERR_MEMORY)
+            orl_logf(log, ORL_LOG_ERROR, "no memory to match features");
     }
     ORL_THEN(result, write_all(&work, db));
     for (size_t i = 0; work.photos && i < photo_count; i++)

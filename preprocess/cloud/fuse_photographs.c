@@ -1,6 +1,5 @@
 #include "preprocess/cloud/fuse_photographs.h"
 
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,12 +27,7 @@ struct fusion {
     struct orl_depth_map *maps; // owned; of each source
     size_t count;
     struct orl_points *points;
-    double done, total;
-    // Of the threads that run a step.
-    enum orl_result (*step)(struct fusion *f, size_t source);
-    double step_done;  // parts of this fusion's work that are finished
-    atomic_size_t next;
-    atomic_int result; // the first enum orl_result that is not ORL_OK
+    double done, total; // of the progress; done grows to what follows this fusion
 };
 
 // --- what is compared with what ---
@@ -122,13 +116,15 @@ enum orl_result orl_fuse_read_map(const struct orl_job *job, const struct orl_co
     return job->params->masks_dir ? apply_mask(job, image->name, &map->depth) : ORL_OK;
 }
 
-static enum orl_result read_depth(struct fusion *f, size_t i)
+static enum orl_result read_depth(void *priv, size_t i)
 {
+    const struct fusion *f = priv;
     return orl_fuse_read_map(f->job, f->model, f->sources[i].image, &f->maps[i]);
 }
 
-static enum orl_result find_pixels(struct fusion *f, size_t i)
+static enum orl_result find_pixels(void *priv, size_t i)
 {
+    const struct fusion *f = priv;
     const struct source *s = &f->sources[i];
     if (!f->maps[i].depth.f32)
         return ORL_OK;
@@ -136,8 +132,9 @@ static enum orl_result find_pixels(struct fusion *f, size_t i)
                                 &f->sources[i].found);
 }
 
-static enum orl_result write_pixels(struct fusion *f, size_t i)
+static enum orl_result write_pixels(void *priv, size_t i)
 {
+    const struct fusion *f = priv;
     const struct orl_job *job = f->job;
     const struct source *s = &f->sources[i];
     const struct orl_image *depth = &f->maps[i].depth;
@@ -160,30 +157,14 @@ static enum orl_result write_pixels(struct fusion *f, size_t i)
     return result;
 }
 
-static void run_sources(void *priv, bool caller)
-{
-    struct fusion *f = priv;
-    size_t i;
-    while (atomic_load(&f->result) == ORL_OK && (i = atomic_fetch_add(&f->next, 1)) < f->count) {
-        int none = ORL_OK;
-        enum orl_result result = f->step(f, i);
-        if (result == ORL_OK && orl_progress_cancelled(f->job->progress))
-            result = ORL_ERR_CANCELLED;
-        atomic_compare_exchange_strong(&f->result, &none, (int)result);
-        if (caller)
-            orl_progress_report(f->job->progress, "fuse", f->done + f->step_done +
-                                (double)i / (double)f->count / 3, f->total, NULL);
-    }
-}
-
 // Runs a third of the work, one source after the other or side by side: the points are the same.
-static enum orl_result run(struct fusion *f, enum orl_result (*step)(struct fusion *f, size_t i))
+static enum orl_result run(struct fusion *f, enum orl_result (*step)(void *priv, size_t source))
 {
-    f->step = step;
-    atomic_store(&f->next, 0);
-    orl_threads_run(f->count, run_sources, f);
-    f->step_done += 1 / 3.0;
-    return (enum orl_result)atomic_load(&f->result);
+    enum orl_result result = orl_threads_each(&(struct orl_each){
+        .work = step, .priv = f, .count = f->count, .progress = f->job->progress, .step = "fuse",
+        .done = f->done, .share = 1 / 3.0, .total = f->total});
+    f->done += 1 / 3.0;
+    return result;
 }
 
 // --- all of it ---

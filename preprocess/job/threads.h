@@ -2,10 +2,22 @@
 #ifndef ORL_PREPROCESS_THREADS_H
 #define ORL_PREPROCESS_THREADS_H
 
-#include "oriel/common.h"
+#include "oriel/progress.h"
+#include "oriel/result.h"
 
-// Calls `work` in as many threads as there are processors, `most` at most; the calling thread is one
-// of them, and is told so. Returns when all have returned.
-void orl_threads_run(size_t most, void (*work)(void *priv, bool caller), void *priv);
+// What is done with each of `count` items, and the progress of that: `step` goes from `done` to
+// `done + share` of `total`.
+struct orl_each {
+    enum orl_result (*work)(void *priv, size_t item);
+    void *priv;
+    size_t count;
+    const struct orl_progress *progress;
+    const char *step;
+    double done, share, total;
+};
+// Calls `work` for each item, in order, in as many threads as there are processors; the calling thread
+// is one of them, and alone reports progress. What fails or cancels keeps further items from being
+// begun, and is returned once all threads have finished theirs.
+enum orl_result orl_threads_each(const struct orl_each *each) ORL_CHECK_RESULT;
 
 #endif
