@@ -21,11 +21,6 @@ bool orl_develop_wanted(const char *name)
     return orl_path_has_extension(name, "tif tiff exr heic heif avif ppm") || orl_picture_is_raw(name);
 }
 
-char *orl_develop_name(const struct orl_log *log, const char *name)
-{
-    return orl_format(log, "%.*s.jpg", (int)orl_path_stem(name), name);
-}
-
 // --- floating point photographs: choice of white ---
 
 // log2 of the geometric mean of all pixels that are not black.
@@ -105,15 +100,16 @@ static bool needs_copy(const struct orl_source *source)
     return orl_develop_wanted(source->given) || source->deep || source->profiled;
 }
 
-static enum orl_result write_copy(const struct orl_job *job, const struct orl_source *source,
+enum orl_result orl_develop_write(const struct orl_job *job, const struct orl_source *source, double ev,
                                   const char *path)
 {
     struct orl_image linear = {0}, copy = {0};
     enum orl_result result = orl_develop_read(job, source, &linear);
+    const float factor = (float)exp2(ev);
     ORL_THEN(result, orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8));
     size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
     for (size_t i = 0; i < count; i++)
-        copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(linear.f32[i]));
+        copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
     ORL_THEN(result, orl_picture_is_png(source->name)
                          ? orl_png_write(job->log, path, &copy)
                          : orl_jpeg_write(job->log, path, &copy, COPY_QUALITY, &source->exif));
@@ -130,7 +126,7 @@ static enum orl_result develop(const struct orl_job *job, struct orl_source *sou
         snprintf(end, sizeof end, ".%d.jpg", (int)log2(job->linear_scale));
     const char *path = ORL_PATH(job->dir, ".oriel/developed/%016" PRIx64 "%s", source->hash, end);
     if (!orl_path_is_file(path))
-        ORL_TRY(write_copy(job, source, path));
+        ORL_TRY(orl_develop_write(job, source, 0, path));
     char *copy = orl_strdup(job->log, path);
     ORL_TRY_MEMORY(copy);
     source->original = source->path;

@@ -7,12 +7,13 @@
 
 // True when COLMAP needs an 8-bit copy of the file, by its extension.
 bool orl_develop_wanted(const char *name);
-// The copy's name; the caller releases it with free().
-char *orl_develop_name(const struct orl_log *log, const char *name);
 // Makes missing copies and sets source->path to the copy's. Sets job->linear_scale.
 enum orl_result orl_develop(struct orl_job *job) ORL_CHECK_RESULT;
 // Reads the photograph as given, in linear light, F32 x3. 1 is its copy's white.
 enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_source *source,
                                  struct orl_image *image) ORL_CHECK_RESULT;
+// Writes an 8-bit sRGB copy of it, brightened by `ev`.
+enum orl_result orl_develop_write(const struct orl_job *job, const struct orl_source *source, double ev,
+                                  const char *path) ORL_CHECK_RESULT;
 
 #endif

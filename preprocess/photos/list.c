@@ -67,8 +67,9 @@ void orl_photos_skip(struct orl_job *job, const char *name, const char *why)
 // The scene's own name of a file at `given`, a path below a folder that was given.
 static char *flat_name(const struct orl_log *log, const char *given)
 {
-    char *name = orl_develop_wanted(given) ? orl_develop_name(log, given)
-                                           : orl_strdup(log, given);
+    char *name = orl_develop_wanted(given)
+                     ? orl_format(log, "%.*s.jpg", (int)orl_path_stem(given), given)
+                     : orl_strdup(log, given);
     for (char *c = name; c && *c; c++)
         if (*c == '/')
             *c = '_';

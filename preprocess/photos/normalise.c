@@ -2,17 +2,15 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/color.h"
 #include "core/memory.h"
 #include "core/order.h"
+#include "preprocess/photos/develop.h"
 
 // Least range of exposures for which copies are made, and how much darker than the median a
 // photograph must be to be copied.
 static const double RANGE_MIN_EV = 1, DARKER_MIN_EV = 0.5;
 static const double BRIGHTEN_MAX_EV = 8; // beyond this, a copy holds only noise
-enum { JPEG_QUALITY = 98 };
 
 // Finds the exposure that darker photographs are brought to; false when copies are not needed.
 static bool find_target(const struct orl_job *job, double *target)
@@ -46,26 +44,6 @@ bool orl_normalise_wanted(const struct orl_job *job)
     return find_target(job, &target);
 }
 
-// Writes the pixels brightened, from the original where it has more than 8 bits.
-static enum orl_result write_copy(const struct orl_job *job, const struct orl_source *source,
-                                  double ev, const char *path)
-{
-    struct orl_image linear = {0}, copy = {0};
-    enum orl_result result = orl_picture_read_linear(
-        job->log, source->original ? source->original : source->path, &linear);
-    ORL_THEN(result, orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8));
-    float factor = (float)(exp2(ev) * (source->unbounded ? job->linear_scale : 1));
-    size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
-    for (size_t i = 0; i < count; i++)
-        copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
-    ORL_THEN(result, orl_picture_is_png(source->name)
-                         ? orl_png_write(job->log, path, &copy)
-                         : orl_jpeg_write(job->log, path, &copy, JPEG_QUALITY, &source->exif));
-    orl_image_finish(&linear);
-    orl_image_finish(&copy);
-    return result;
-}
-
 enum orl_result orl_normalise(const struct orl_job *job, const char *dir, size_t *copies)
 {
     double target;
@@ -79,7 +57,7 @@ enum orl_result orl_normalise(const struct orl_job *job, const char *dir, size_t
         if (orl_progress_cancelled(job->progress))
             result = ORL_ERR_CANCELLED;
         else
-            result = ev > 0 ? write_copy(job, source, ev, path)
+            result = ev > 0 ? orl_develop_write(job, source, ev, path)
                             : orl_job_link(job, source->path, path);
         *copies += ev > 0;
     }
