@@ -79,13 +79,15 @@ static enum orl_result write_stereo_lists(struct orl_job *job, const struct orl_
 
 // --- densify ---
 
-struct orl_densify_params orl_densify_quality(enum orl_quality quality)
+struct orl_densify_params orl_densify_settings(const struct orl_prepare_params *from)
 {
     struct orl_densify_params params = {ORL_DENSIFY_DEFAULTS};
-    if (quality == ORL_QUALITY_DRAFT) {
+    params.seed = from->seed;
+    params.max_vram_bytes = from->max_vram_bytes;
+    if (from->quality == ORL_QUALITY_DRAFT) {
         params.sources = 5;
         params.iterations = 3;
-    } else if (quality == ORL_QUALITY_HIGH) {
+    } else if (from->quality == ORL_QUALITY_HIGH) {
         params.sources = 10;
         params.iterations = 6;
         params.geometric_passes = 2;
@@ -93,18 +95,10 @@ struct orl_densify_params orl_densify_quality(enum orl_quality quality)
     return params;
 }
 
-static struct orl_densify_params densify_settings(const struct orl_job *job)
-{
-    struct orl_densify_params params = orl_densify_quality(job->params->quality);
-    params.seed = job->params->seed;
-    params.max_vram_bytes = job->params->max_vram_bytes;
-    return params;
-}
-
 static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *train,
                                   json_t *record)
 {
-    struct orl_densify_params params = densify_settings(job);
+    struct orl_densify_params params = orl_densify_settings(job->params);
     ORL_TRY(orl_job_sparse(job, &params.model));
     struct orl_gpu *own = NULL, *gpu = job->params->gpu;
     if (!gpu) {
@@ -187,7 +181,7 @@ static enum orl_result open_stereo(struct orl_job *job, struct orl_names *train)
 enum orl_result orl_stage_densify_begin(struct orl_job *job)
 {
     struct orl_names train = {0};
-    struct orl_densify_params params = densify_settings(job);
+    struct orl_densify_params params = orl_densify_settings(job->params);
     bool use_colmap = false;
     ORL_TRY(choose_densifier(job, &use_colmap));
     if (use_colmap)

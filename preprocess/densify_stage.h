@@ -6,8 +6,8 @@
 #include "preprocess/densify/densify.h"
 #include "preprocess/job/job.h"
 
-// The effort of the stereo at a quality.
-struct orl_densify_params orl_densify_quality(enum orl_quality quality);
+// What the stereo does by the options of prepare.
+struct orl_densify_params orl_densify_settings(const struct orl_prepare_params *params);
 // Writes SCENE/stereo.
 enum orl_result orl_stage_densify(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 

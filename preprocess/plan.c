@@ -126,9 +126,7 @@ static enum orl_result read_scene(struct planner *p, int photographs)
     ORL_TRY(read_photos(p));
     size_t count = p->photos.count;
     p->parts = (int)((count + (size_t)photographs - 1) / (size_t)photographs);
-    p->densify = orl_densify_quality(p->params.quality);
-    p->densify.seed = p->params.seed;
-    p->densify.max_vram_bytes = p->params.max_vram_bytes;
+    p->densify = orl_densify_settings(&p->params);
     p->densify.masks_dir = p->params.masks_dir ? orl_path_print(p->masks, p->dir, "masks") : NULL;
     p->pixels = orl_array(p->log, count + 1, sizeof *p->pixels);
     p->reads = orl_array(p->log, (size_t)p->parts * (size_t)p->parts + 1, sizeof *p->reads);
