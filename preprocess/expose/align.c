@@ -38,7 +38,7 @@ struct problem {
     float *sigma;       // of the value; INFINITY: takes no part
     float *weight;      // robust
     float *lens_log;    // log of the vignetting found so far
-    float *scratch;     // per observation
+    float *scratch, *residual; // per observation
     double *matrix, *x, *prior, *precision;
     size_t *lens_photos;        // photographs of each lens
     double (*lens)[LENS_TERMS]; // log vignetting = sum of lens[k] r^(2 k + 2)
@@ -123,18 +123,10 @@ static void add_point(const struct problem *p, size_t point, int channel, bool w
     }
 }
 
-// Median of the first `count` values in p->scratch, which are not negative.
-static double median(struct problem *p, size_t count)
-{
-    if (!count)
-        return 0;
-    qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
-    return (double)p->scratch[count / 2];
-}
-
 // Writes, for every observation that takes part, the residual from its point's mean.
-static void residuals(struct problem *p, int channel, bool with_lens, float *out)
+static void residuals(struct problem *p, int channel, bool with_lens)
 {
+    float *out = p->residual;
     for (size_t point = 0; point < p->samples->point_count; point++) {
         size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
         double total = 0, mean = 0;
@@ -150,21 +142,22 @@ static void residuals(struct problem *p, int channel, bool with_lens, float *out
 }
 
 // Robust standard deviation of the residuals, absolute or relative to their sigmas.
-static double spread(struct problem *p, const float *residual, bool relative)
+static double spread(struct problem *p, bool relative)
 {
     size_t count = 0;
     for (size_t i = 0; i < p->samples->count; i++)
         if (isfinite(p->sigma[i]))
-            p->scratch[count++] = fabsf(residual[i]) / (relative ? p->sigma[i] : 1);
-    return 1.4826 * median(p, count);
+            p->scratch[count++] = fabsf(p->residual[i]) / (relative ? p->sigma[i] : 1);
+    qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
+    return count ? 1.4826 * (double)p->scratch[count / 2] : 0;
 }
 
 // Applies Huber's weights or Tukey's, which give outliers weight 0.
-static void reweigh(struct problem *p, const float *residual, bool tukey)
+static void reweigh(struct problem *p, bool tukey)
 {
-    double scale = fmax(spread(p, residual, true), 0.1);
+    double scale = fmax(spread(p, true), 0.1);
     for (size_t i = 0; i < p->samples->count; i++) {
-        double t = fabs((double)residual[i]) / ((double)p->sigma[i] * scale);
+        double t = fabs((double)p->residual[i]) / ((double)p->sigma[i] * scale);
         double huber = t <= 1.345 ? 1 : 1.345 / t, u = t / 4.685;
         p->weight[i] = !isfinite(p->sigma[i]) ? 0
                        : !tukey ? (float)huber
@@ -191,7 +184,7 @@ static bool step(struct problem *p, int channel, bool with_lens, double scale)
 }
 
 // Solves by iteratively reweighted least squares. The unknowns are left in p->x.
-static enum orl_result fit(struct problem *p, int channel, bool with_lens, float *residual)
+static enum orl_result fit(struct problem *p, int channel, bool with_lens)
 {
     double information = 0;
     for (size_t i = 0; i < p->samples->count; i++) {
@@ -203,8 +196,8 @@ static enum orl_result fit(struct problem *p, int channel, bool with_lens, float
     for (int i = 0; i < ITERATIONS; i++) {
         if (!step(p, channel, with_lens, scale))
             return orl_fail(p->log, ORL_ERR_DATA, "photographs cannot be aligned: no solution");
-        residuals(p, channel, with_lens, residual);
-        reweigh(p, residual, i + 1 >= ITERATIONS - TUKEY_ITERATIONS);
+        residuals(p, channel, with_lens);
+        reweigh(p, i + 1 >= ITERATIONS - TUKEY_ITERATIONS);
     }
     return ORL_OK;
 }
@@ -257,14 +250,13 @@ static double farthest(const struct problem *p, size_t lens)
     return (double)r2;
 }
 
-static enum orl_result fit_lenses(struct problem *p, float *residual,
-                                  struct orl_alignment *alignment)
+static enum orl_result fit_lenses(struct problem *p, struct orl_alignment *alignment)
 {
-    enum orl_result result = fit(p, 3, false, residual);
-    double before = spread(p, residual, false);
-    ORL_THEN(result, fit(p, 3, true, residual));
+    enum orl_result result = fit(p, 3, false);
+    double before = spread(p, false);
+    ORL_THEN(result, fit(p, 3, true));
     // Vignetting that explains less than a hundredth of the spread is rejected as noise.
-    if (result != ORL_OK || spread(p, residual, false) > 0.99 * before)
+    if (result != ORL_OK || spread(p, false) > 0.99 * before)
         return result;
     for (size_t k = 0; k < p->lens_count; k++) {
         const double *terms = p->x + p->photo_count + LENS_TERMS * k;
@@ -416,8 +408,7 @@ static void fall_back(struct problem *p)
 
 static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignment)
 {
-    float *residual = orl_array(p->log, p->samples->count, sizeof *residual);
-    enum orl_result result = residual ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
     bool again = true;
     set_prior(p);
     for (int round = 0; result == ORL_OK && again && round < ROUNDS; round++) {
@@ -426,23 +417,22 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
         if (round == 0) {
             for (size_t i = 0; i < p->samples->count; i++)
                 p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
-            residuals(p, 3, false, residual);
-            alignment->spread_before_ev = spread(p, residual, false) / LN2;
+            residuals(p, 3, false);
+            alignment->spread_before_ev = spread(p, false) / LN2;
             if (p->params->vignetting)
-                result = fit_lenses(p, residual, alignment);
+                result = fit_lenses(p, alignment);
         }
         for (int c = 0; result == ORL_OK && c < 4; c++) {
-            result = fit(p, c, false, residual);
+            result = fit(p, c, false);
             if (result == ORL_OK && c < 3)
                 set_gains(p, c);
         }
         again = result == ORL_OK && refuse(p);
     }
     if (result == ORL_OK) {
-        alignment->spread_after_ev = spread(p, residual, false) / LN2;
+        alignment->spread_after_ev = spread(p, false) / LN2;
         fall_back(p);
     }
-    free(residual);
     return result;
 }
 
@@ -462,22 +452,24 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
     struct problem p = {.log = log, .samples = samples, .params = params, .photos = photos,
                         .photo_count = photo_count, .lens_count = lens_count(photos, photo_count)};
     size_t unknowns = photo_count + LENS_TERMS * p.lens_count, count = samples->count;
-    p.value = orl_array(log, count, sizeof *p.value);
-    p.sigma = orl_array(log, count, sizeof *p.sigma);
-    p.weight = orl_array(log, count, sizeof *p.weight);
-    p.lens_log = orl_array(log, count, sizeof *p.lens_log);
-    p.scratch = orl_array(log, count, sizeof *p.scratch);
-    p.matrix = orl_array(log, unknowns, unknowns * sizeof *p.matrix);
-    p.x = orl_array(log, unknowns, sizeof *p.x);
-    p.prior = orl_array(log, photo_count, sizeof *p.prior);
-    p.precision = orl_array(log, photo_count, sizeof *p.precision);
-    p.lens = orl_array(log, p.lens_count, sizeof *p.lens);
+    float *floats = orl_array(log, count, 9 * sizeof *floats);
+    double *doubles = orl_array(log, unknowns, (unknowns + 3) * sizeof *doubles);
     p.lens_photos = orl_array(log, p.lens_count, sizeof *p.lens_photos);
     alignment->vignette = orl_array(log, p.lens_count, sizeof *alignment->vignette);
     alignment->lens_count = p.lens_count;
     enum orl_result result = ORL_ERR_MEMORY;
-    if (p.value && p.sigma && p.weight && p.lens_log && p.scratch && p.matrix && p.x &&
-        p.prior && p.precision && p.lens && p.lens_photos && alignment->vignette) {
+    if (floats && doubles && p.lens_photos && alignment->vignette) {
+        p.value = (float (*)[4])floats;
+        p.sigma = floats + 4 * count;
+        p.weight = floats + 5 * count;
+        p.lens_log = floats + 6 * count;
+        p.scratch = floats + 7 * count;
+        p.residual = floats + 8 * count;
+        p.matrix = doubles;
+        p.x = doubles + unknowns * unknowns;
+        p.prior = p.x + unknowns;
+        p.precision = p.prior + photo_count;
+        p.lens = (double (*)[LENS_TERMS])(p.precision + photo_count);
         for (size_t i = 0; i < photo_count; i++) {
             photos[i].refused = false;
             photos[i].off_ev = 0;
@@ -485,16 +477,8 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
         }
         result = solve_all(&p, alignment);
     }
-    free(p.value);
-    free(p.sigma);
-    free(p.weight);
-    free(p.lens_log);
-    free(p.scratch);
-    free(p.matrix);
-    free(p.x);
-    free(p.prior);
-    free(p.precision);
-    free(p.lens);
+    free(floats);
+    free(doubles);
     free(p.lens_photos);
     if (result != ORL_OK)
         orl_alignment_finish(alignment);

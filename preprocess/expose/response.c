@@ -220,10 +220,8 @@ static double spread(struct problem *p, bool relative)
     for (size_t i = 0; i < p->samples->count; i++)
         if (isfinite(p->sigma[i]))
             p->scratch[count++] = fabsf(p->residual[i]) / (relative ? p->sigma[i] : 1);
-    if (!count)
-        return 0;
     qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
-    return 1.4826 * (double)p->scratch[count / 2];
+    return count ? 1.4826 * (double)p->scratch[count / 2] : 0;
 }
 
 static void reset_weights(struct problem *p)
@@ -358,8 +356,7 @@ static void add_offsets(const struct problem *p, bool stretches, double *a, size
 
 static void set_shares(struct problem *p)
 {
-    double *share = p->share;
-    double total = 0;
+    double *share = p->share, total = 0;
     memset(share, 0, p->photo_count * sizeof *share);
     for (size_t i = 0; i < p->samples->count; i++) {
         share[p->samples->items[i].photo] += weight_of(p, i);
@@ -518,14 +515,13 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
     size_t count = samples->count;
     struct problem p = {.samples = samples, .photos = photos, .photo_count = photo_count};
     size_t unknowns = TERMS + photo_count;
-    p.matrix = orl_array(log, unknowns, unknowns * sizeof *p.matrix);
-    p.unknown = orl_array(log, unknowns, sizeof *p.unknown);
-    p.offset = orl_array(log, photo_count, sizeof *p.offset);
-    p.share = orl_array(log, photo_count, sizeof *p.share);
+    p.matrix = orl_array(log, unknowns, (unknowns + 3) * sizeof *p.matrix);
     float *block = orl_array(log, count, 5 * sizeof *block);
-    enum orl_result result = block && p.matrix && p.unknown && p.offset && p.share
-                                 ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = block && p.matrix ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
+        p.unknown = p.matrix + unknowns * unknowns;
+        p.offset = p.unknown + unknowns;
+        p.share = p.offset + photo_count;
         p.sigma = block;
         p.weight = block + count;
         p.residual = block + 2 * count;
@@ -547,8 +543,5 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
         set_srgb(response);
     free(block);
     free(p.matrix);
-    free(p.unknown);
-    free(p.offset);
-    free(p.share);
     return result;
 }
