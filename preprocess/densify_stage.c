@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "oriel/gpu.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/job/colmap_run.h"
@@ -13,11 +14,12 @@ enum { COLMAP_SOURCES = 20 };
 
 // --- COLMAP's lists, of training photographs only ---
 
-// Chooses photographs of `names` that share most sparse points with image `ref`, best first.
+// Chooses photographs of `names` that share most sparse points with image `ref`, best first; how many.
+// `best` has room for all.
 static size_t best_sources(const struct orl_colmap_model *model, const struct orl_names *names,
-                           size_t ref, bool *seen, size_t best[COLMAP_SOURCES])
+                           size_t ref, bool *seen, struct orl_ranked *best)
 {
-    size_t shared[COLMAP_SOURCES] = {0}, count = 0;
+    size_t count = 0;
     const struct orl_colmap_image *image = &model->images[ref];
     memset(seen, 0, model->point_count);
     for (size_t p = 0; p < image->point_count; p++)
@@ -28,18 +30,11 @@ static size_t best_sources(const struct orl_colmap_model *model, const struct or
             continue;
         for (size_t p = 0; p < model->images[i].point_count; p++)
             common += seen[model->images[i].points[p]];
-        size_t at = count;
-        while (at > 0 && shared[at - 1] < common)
-            at--;
-        if (common == 0 || at == COLMAP_SOURCES)
-            continue;
-        count += count < COLMAP_SOURCES;
-        for (size_t k = count - 1; k > at; k--)
-            shared[k] = shared[k - 1], best[k] = best[k - 1];
-        shared[at] = common;
-        best[at] = i;
+        if (common)
+            best[count++] = (struct orl_ranked){-(double)common, i};
     }
-    return count;
+    qsort(best, count, sizeof *best, orl_order_ranked);
+    return count < COLMAP_SOURCES ? count : COLMAP_SOURCES;
 }
 
 static enum orl_result write_sources(struct orl_job *job, FILE *out,
@@ -48,9 +43,8 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
     const struct orl_colmap_model *model;
     ORL_TRY(orl_job_sparse(job, &model));
     bool *seen = orl_array(job->log, model->point_count, sizeof *seen);
-    ORL_TRY_MEMORY(seen);
-    for (size_t i = 0; i < model->image_count; i++) {
-        size_t best[COLMAP_SOURCES];
+    struct orl_ranked *best = orl_array(job->log, model->image_count, sizeof *best);
+    for (size_t i = 0; seen && best && i < model->image_count; i++) {
         if (!orl_names_contain(names, model->images[i].name))
             continue;
         size_t count = best_sources(model, names, i, seen, best);
@@ -58,11 +52,13 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
             continue; // COLMAP stops at a photograph without sources
         fprintf(out, "%s\n", model->images[i].name);
         for (size_t k = 0; k < count; k++)
-            fprintf(out, "%s%s", k ? ", " : "", model->images[best[k]].name);
+            fprintf(out, "%s%s", k ? ", " : "", model->images[best[k].index].name);
         fprintf(out, "\n");
     }
+    enum orl_result result = seen && best ? ORL_OK : ORL_ERR_MEMORY;
     free(seen);
-    return ORL_OK;
+    free(best);
+    return result;
 }
 
 // COLMAP's own lists would include held-out photographs as sources.
@@ -138,22 +134,13 @@ static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
 // Keeps the maps of an interrupted run when they were made with the same settings.
 static enum orl_result begin_stereo(const struct orl_job *job)
 {
-    const char *key = job->keys[ORL_STAGE_DENSIFY];
-    uint8_t *data = NULL;
-    size_t size;
-    const char *path = ORL_PATH(job->dir, "stereo/.oriel-key");
-    bool same = orl_file_read(NULL, path, 64, &data, &size) == ORL_OK &&
-                strcmp((const char *)data, key) == 0;
-    enum orl_result result = ORL_OK;
-    if (!same) {
-        static const char *const dirs[] = {"stereo", "stereo/depth_maps", "stereo/normal_maps",
-                                           "stereo/consistency_graphs"};
-        for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++)
-            result = orl_job_fresh_dir(job, dirs[i]);
-        ORL_THEN(result, orl_file_write(job->log, path, key, strlen(key)));
-    }
-    free(data);
-    return result;
+    static const char *const dirs[] = {"stereo", "stereo/depth_maps", "stereo/normal_maps",
+                                       "stereo/consistency_graphs"};
+    if (orl_job_has_key(job, ORL_STAGE_DENSIFY, "stereo/.oriel-key"))
+        return ORL_OK;
+    for (size_t i = 0; i < ORL_COUNT(dirs); i++)
+        ORL_TRY(orl_job_fresh_dir(job, dirs[i]));
+    return orl_job_write_key(job, ORL_STAGE_DENSIFY, "stereo/.oriel-key");
 }
 
 // Whether COLMAP makes the stereo; an error where that was asked for and it cannot.

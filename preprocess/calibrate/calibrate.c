@@ -180,9 +180,8 @@ static enum orl_result set_mark(const struct calibration *c, bool matched)
 {
     if (!matched)
         return orl_job_remove(c->job, WORK "/matched");
-    const char *key = c->job->keys[ORL_STAGE_CALIBRATE];
     ORL_TRY(orl_flush(c->job->log, ORL_PATH(c->job->dir, WORK)));
-    return orl_file_write(c->job->log, ORL_PATH(c->job->dir, WORK "/matched"), key, strlen(key));
+    return orl_job_write_key(c->job, ORL_STAGE_CALIBRATE, WORK "/matched");
 }
 
 static enum orl_result restart_database(struct calibration *c)
@@ -305,16 +304,6 @@ static enum orl_result straighten(struct calibration *c)
     return result;
 }
 
-static bool is_marked(const struct calibration *c)
-{
-    uint8_t *data = NULL;
-    size_t size;
-    bool same = orl_file_read(NULL, ORL_PATH(c->job->dir, WORK "/matched"), 64, &data, &size) == ORL_OK &&
-                strcmp((const char *)data, c->job->keys[ORL_STAGE_CALIBRATE]) == 0;
-    free(data);
-    return same;
-}
-
 static enum orl_result normalise(const struct calibration *c)
 {
     size_t copies;
@@ -330,7 +319,7 @@ static enum orl_result normalise(const struct calibration *c)
 static enum orl_result begin_database(struct calibration *c)
 {
     bool joined = false;
-    if (is_marked(c)) {
+    if (orl_job_has_key(c->job, ORL_STAGE_CALIBRATE, WORK "/matched")) {
         orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: features and matches are there already");
         return ORL_OK;
     }

@@ -6,6 +6,7 @@
 #include "bridge/bridge.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "io/picture.h"
 #include "preprocess/cloud/fuse_maps.h"
 #include "preprocess/cloud/fuse_memory.h"
@@ -32,31 +33,20 @@ struct fusion {
 
 // --- what is compared with what ---
 
-struct overlap {
-    uint32_t source, shared;
-};
-
-static int compare_overlaps(const void *left, const void *right)
-{
-    const struct overlap *a = left, *b = right;
-    return a->shared != b->shared ? (a->shared < b->shared ? 1 : -1)
-                                  : (a->source > b->source) - (a->source < b->source);
-}
-
-// Counts the sparse points that a source shares with each other one. `seen`: a byte for each sparse
-// point.
+// Counts the sparse points that a source shares with each other one, as negative keys. `seen`: a byte
+// for each sparse point.
 static void count_shared(const struct fusion *f, size_t own, uint8_t *seen,
-                         struct overlap *overlaps)
+                         struct orl_ranked *overlaps)
 {
     const struct orl_colmap_image *image = f->sources[own].image;
     memset(seen, 0, f->model->point_count);
     for (size_t k = 0; k < image->point_count; k++)
         seen[image->points[k]] = 1;
     for (size_t i = 0; i < f->count; i++) {
-        overlaps[i] = (struct overlap){(uint32_t)i, 0};
+        overlaps[i] = (struct orl_ranked){0, i};
         const struct orl_colmap_image *other = f->sources[i].image;
         for (size_t k = 0; i != own && k < other->point_count; k++)
-            overlaps[i].shared += seen[other->points[k]];
+            overlaps[i].key -= seen[other->points[k]];
     }
 }
 
@@ -64,19 +54,19 @@ static enum orl_result find_others(struct fusion *f)
 {
     const struct orl_log *log = f->job->log;
     uint8_t *seen = orl_array(log, f->model->point_count + 1, 1);
-    struct overlap *overlaps = orl_array(log, f->count, sizeof *overlaps);
+    struct orl_ranked *overlaps = orl_array(log, f->count, sizeof *overlaps);
     enum orl_result result = seen && overlaps ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < f->count; i++) {
         struct source *s = &f->sources[i];
         count_shared(f, i, seen, overlaps);
-        qsort(overlaps, f->count, sizeof *overlaps, compare_overlaps);
+        qsort(overlaps, f->count, sizeof *overlaps, orl_order_ranked);
         s->others = orl_array(log, ORL_FUSE_OTHERS, sizeof *s->others);
         if (!s->others)
             result = ORL_ERR_MEMORY;
         // Those without a point in common may still show the same surface where points are few.
         for (size_t k = 0; result == ORL_OK && k < f->count && s->other_count < ORL_FUSE_OTHERS; k++)
-            if (overlaps[k].source != i)
-                s->others[s->other_count++] = overlaps[k].source;
+            if (overlaps[k].index != i)
+                s->others[s->other_count++] = (uint32_t)overlaps[k].index;
     }
     free(seen);
     free(overlaps);

@@ -159,6 +159,22 @@ bool orl_job_has(const struct orl_job *job, const char *name)
     return access(ORL_PATH(job->dir, "%s", name), F_OK) == 0;
 }
 
+bool orl_job_has_key(const struct orl_job *job, enum orl_stage_id stage, const char *name)
+{
+    uint8_t *data = NULL;
+    size_t size;
+    bool same = orl_file_read(NULL, ORL_PATH(job->dir, "%s", name), 64, &data, &size) == ORL_OK &&
+                strcmp((const char *)data, job->keys[stage]) == 0;
+    free(data);
+    return same;
+}
+
+enum orl_result orl_job_write_key(const struct orl_job *job, enum orl_stage_id stage, const char *name)
+{
+    const char *key = job->keys[stage];
+    return orl_file_write(job->log, ORL_PATH(job->dir, "%s", name), key, strlen(key));
+}
+
 enum orl_result orl_job_replace(const struct orl_job *job, const char *temp, const char *name)
 {
     const char *from = ORL_PATH(job->dir, "%s", temp), *to = ORL_PATH(job->dir, "%s", name);

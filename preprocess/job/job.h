@@ -116,6 +116,10 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target,
                              const char *path) ORL_CHECK_RESULT;
 enum orl_result orl_job_remove(const struct orl_job *job, const char *name) ORL_CHECK_RESULT;
 bool orl_job_has(const struct orl_job *job, const char *name);
+// Whether SCENE/`name`, which orl_job_write_key wrote, has the key that the stage has now.
+bool orl_job_has_key(const struct orl_job *job, enum orl_stage_id stage, const char *name);
+enum orl_result orl_job_write_key(const struct orl_job *job, enum orl_stage_id stage,
+                                  const char *name) ORL_CHECK_RESULT;
 // Writes job->stages.
 enum orl_result orl_job_save_stages(const struct orl_job *job) ORL_CHECK_RESULT;
 // Writes one name per line.
