@@ -77,27 +77,24 @@ enum orl_result orl_fill_around(const struct orl_log *log, struct orl_image *col
                                 const struct orl_image *known)
 {
     struct level levels[LEVELS_MAX] = {{.width = color->width, .height = color->height}};
+    size_t texels = (size_t)color->width * (size_t)color->height;
     int count = 1;
-    enum orl_result result = ORL_OK;
     for (; count < LEVELS_MAX && (levels[count - 1].width > 1 || levels[count - 1].height > 1);
          count++) {
         levels[count].width = (levels[count - 1].width + 1) / 2;
         levels[count].height = (levels[count - 1].height + 1) / 2;
+        texels += (size_t)levels[count].width * (size_t)levels[count].height;
     }
-    for (int i = 0; i < count && result == ORL_OK; i++) {
-        levels[i].texels = orl_array(log, (size_t)levels[i].width * (size_t)levels[i].height,
-                                     sizeof *levels[i].texels);
-        result = levels[i].texels ? ORL_OK : ORL_ERR_MEMORY;
+    levels[0].texels = orl_array(log, texels, sizeof *levels[0].texels); // of all levels
+    ORL_TRY_MEMORY(levels[0].texels);
+    seed(color, known, &levels[0]);
+    for (int i = 0; i + 1 < count; i++) {
+        levels[i + 1].texels = levels[i].texels + (size_t)levels[i].width * (size_t)levels[i].height;
+        pull(&levels[i], &levels[i + 1]);
     }
-    if (result == ORL_OK) {
-        seed(color, known, &levels[0]);
-        for (int i = 0; i + 1 < count; i++)
-            pull(&levels[i], &levels[i + 1]);
-        for (int i = count - 1; i > 0; i--)
-            push(&levels[i], &levels[i - 1]);
-        take(&levels[0], known, color);
-    }
-    for (int i = 0; i < count; i++)
-        free(levels[i].texels);
-    return result;
+    for (int i = count - 1; i > 0; i--)
+        push(&levels[i], &levels[i - 1]);
+    take(&levels[0], known, color);
+    free(levels[0].texels);
+    return ORL_OK;
 }

@@ -19,6 +19,7 @@ struct series_set {
     struct orl_scene scene; // borrowed, except `photos`, whose gains are per series
     struct series *items;
     size_t count;
+    float least_ev, most_ev; // of the series
     struct orl_renderer *renderer;
 };
 

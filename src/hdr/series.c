@@ -68,8 +68,13 @@ enum orl_result orl_series_init(struct orl_gpu *gpu, const struct orl_scene *sce
             result = add_photo(log, set, i);
     if (result != ORL_OK)
         return result;
-    for (size_t k = 0; k < set->count; k++)
-        set->items[k].ev /= (float)set->items[k].count;
+    set->least_ev = INFINITY;
+    set->most_ev = -INFINITY;
+    for (size_t k = 0; k < set->count; k++) {
+        float ev = set->items[k].ev /= (float)set->items[k].count;
+        set->least_ev = fminf(set->least_ev, ev);
+        set->most_ev = fmaxf(set->most_ev, ev);
+    }
     // Pictures keep the exposure of their series, so that they clip where its photographs clip.
     for (size_t i = 0; i < scene->photo_count; i++) {
         const struct series *s = find_series(set, scene->photos[i].series);
@@ -168,17 +173,6 @@ static void merge_layers(const struct orl_frame *picture, struct orl_frame *fram
         frame->coverage.f32[i] = fmaxf(frame->coverage.f32[i], picture->coverage.f32[i]);
 }
 
-// Exposures of the darkest and of the brightest series.
-static void exposure_range(const struct series_set *set, float range[2])
-{
-    range[0] = INFINITY;
-    range[1] = -INFINITY;
-    for (size_t k = 0; k < set->count; k++) {
-        range[0] = fminf(range[0], set->items[k].ev);
-        range[1] = fmaxf(range[1], set->items[k].ev);
-    }
-}
-
 static enum orl_result draw_series(struct series_set *set, size_t k,
                                    const struct orl_hdr_params *params,
                                    const struct orl_view *view, const bool *skip,
@@ -186,15 +180,13 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
 {
     struct series *s = &set->items[k];
     struct orl_frame picture;
-    float range[2];
-    exposure_range(set, range);
     for (size_t i = 0; i < set->scene.photo_count; i++)
         s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
     // Antialiasing is off: all series need the same depth edges.
     struct orl_render_params render = params->render;
     render.antialias = ORL_ANTIALIAS_OFF;
     ORL_TRY(orl_renderer_draw(set->renderer, view, &render, s->skip, &picture));
-    form_opinions(&params->sensor, s, s->ev - range[0], &picture, estimates + k, set->count);
+    form_opinions(&params->sensor, s, s->ev - set->least_ev, &picture, estimates + k, set->count);
     if (k == 0) {
         *frame = picture;
     } else {
@@ -209,7 +201,6 @@ enum orl_result orl_series_draw(const struct orl_log *log, struct series_set *se
                                 const bool *skip, struct orl_frame *frame)
 {
     size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
-    float range[2];
     memset(frame, 0, sizeof *frame);
     struct estimate *estimates = orl_array(log, pixels, set->count * sizeof *estimates);
     enum orl_result result = estimates ? ORL_OK : ORL_ERR_MEMORY;
@@ -217,8 +208,7 @@ enum orl_result orl_series_draw(const struct orl_log *log, struct series_set *se
         result = draw_series(set, k, params, view, skip, estimates, frame);
     ORL_THEN(result, orl_image_init(log, &frame->confidence, view->camera.width, view->camera.height, 1,
                                     ORL_PIXEL_F32));
-    exposure_range(set, range);
-    float least = orl_least_radiance(&params->sensor, range[1], true);
+    float least = orl_least_radiance(&params->sensor, set->most_ev, true);
     for (size_t i = 0; result == ORL_OK && i < pixels; i++)
         merge_pixel(&params->sensor, set, least, estimates + i * set->count,
                     frame->color.f32 + 3 * i, &frame->confidence.f32[i]);
