@@ -136,8 +136,11 @@ static enum orl_result look_loosely(const struct orl_log *log, const char *dir, 
     return only ? set(log, dir, only, IMPORT_PICTURE, found) : ORL_OK;
 }
 
-enum orl_result orl_import_find(const struct orl_log *log, const char *dir, const char *name,
-                                const char *role, bool loosely, struct import_found *found)
+// Looks in `dir` for the files of the camera `name`: a picture of this name with any extension; a
+// folder of this name with pictures or a clip (the clip named `role` where there are several); or a
+// clip of this name. `loosely`: also a picture whose name contains the camera's. Sets found->kind.
+static enum orl_result find_files(const struct orl_log *log, const char *dir, const char *name,
+                                  const char *role, bool loosely, struct import_found *found)
 {
     struct orl_names names = {0};
     orl_import_found_finish(found);
@@ -171,7 +174,7 @@ static enum orl_result find_below(const struct import_job *job, const char *dir,
 {
     const char *base = orl_path_name(path);
     const char *folder = ORL_PATH(*path == '/' ? "" : dir, "%.*s", (int)(base - path), path);
-    return orl_path_is_dir(folder) ? orl_import_find(job->log, folder, base, "video", false, found) : ORL_OK;
+    return orl_path_is_dir(folder) ? find_files(job->log, folder, base, "video", false, found) : ORL_OK;
 }
 
 // Sets `dir` to the first folder beside the cameras that has the first camera's picture, else to the cameras' folder.
@@ -236,7 +239,7 @@ static enum orl_result find_picture(const struct import_job *job, const char *di
     if (found->kind == IMPORT_NOTHING && strchr(told, '/') && !job->params->images_dir)
         ORL_TRY(find_below(job, known->folder, told, found));
     if (found->kind == IMPORT_NOTHING && base != image->name && is_only_name(job, base))
-        ORL_TRY(orl_import_find(job->log, dir, base, "video", false, found));
+        ORL_TRY(find_files(job->log, dir, base, "video", false, found));
     return ORL_OK;
 }
 
@@ -397,17 +400,16 @@ static enum orl_result find_companion(const struct import_job *job, const char *
         if (*c == '/')
             *c = '_';
     if (base != name && orl_path_is_dir(inside))
-        ORL_TRY(orl_import_find(job->log, inside, base, role, true, found));
+        ORL_TRY(find_files(job->log, inside, base, role, true, found));
     if (base != name && found->kind == IMPORT_NOTHING)
-        ORL_TRY(orl_import_find(job->log, dir, flat, role, true, found));
+        ORL_TRY(find_files(job->log, dir, flat, role, true, found));
     if (found->kind == IMPORT_NOTHING && is_only_name(job, base))
-        ORL_TRY(orl_import_find(job->log, dir, base, role, true, found));
+        ORL_TRY(find_files(job->log, dir, base, role, true, found));
     return ORL_OK;
 }
 
 // Finds masks or backgrounds, of which every camera must have one.
-static enum orl_result find_companions(struct import_job *job, const char *option,
-                                       const char *dir, const char *role)
+static enum orl_result find_companions(struct import_job *job, const char *option, const char *dir)
 {
     if (!orl_path_is_dir(dir))
         return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: no such folder", option, dir);
@@ -415,7 +417,7 @@ static enum orl_result find_companions(struct import_job *job, const char *optio
     for (size_t i = 0; i < job->view_count; i++) {
         struct import_view *view = &job->views[i];
         struct import_found *found = masks ? &view->mask : &view->background;
-        ORL_TRY(find_companion(job, dir, role, view->image->name, found));
+        ORL_TRY(find_companion(job, dir, option, view->image->name, found));
         if (found->kind == IMPORT_NOTHING)
             return orl_fail(job->log, ORL_ERR_NOT_FOUND, "--%s %s: nothing here for the camera "
                             "%s", option, dir, view->image->name);
@@ -458,8 +460,8 @@ enum orl_result orl_import_find_all(struct import_job *job)
     if (job->params->silhouettes == ORL_SILHOUETTES_STATED && !job->sequence)
         ORL_TRY(find_stated_masks(job));
     if (job->params->masks_dir)
-        ORL_TRY(find_companions(job, "masks", job->params->masks_dir, "masks"));
+        ORL_TRY(find_companions(job, "masks", job->params->masks_dir));
     if (job->params->background)
-        ORL_TRY(find_companions(job, "background", job->params->background, "background"));
+        ORL_TRY(find_companions(job, "background", job->params->background));
     return ORL_OK;
 }

@@ -48,12 +48,6 @@ struct import_job {
 
 // --- import_find.c ---
 
-// Looks in `dir` for the files of the camera `name`: a picture of this name with any extension; a
-// folder of this name with pictures or a clip (the clip named `role` where there are several); or a
-// clip of this name. `loosely`: also a picture whose name contains the camera's. Sets found->kind.
-enum orl_result orl_import_find(const struct orl_log *log, const char *dir, const char *name,
-                                const char *role, bool loosely,
-                                struct import_found *found) ORL_CHECK_RESULT;
 void orl_import_found_finish(struct import_found *found);
 // Lists the pictures in a folder, sorted by name.
 enum orl_result orl_import_list_pictures(const struct orl_log *log, const char *dir,

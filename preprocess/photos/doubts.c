@@ -28,8 +28,9 @@ bool orl_doubts_has_look(const struct orl_job *job, const struct orl_source *sou
     return orl_path_is_file(LOOK_PATH(job, source));
 }
 
-enum orl_result orl_doubts_look(const struct orl_job *job, const struct orl_source *source,
-                                struct orl_look *look)
+// Reads the photograph only when no run has kept its look.
+static enum orl_result find_look(const struct orl_job *job, const struct orl_source *source,
+                                 struct orl_look *look)
 {
     uint8_t *data = NULL;
     size_t size = 0;
@@ -88,7 +89,7 @@ enum orl_result orl_doubts_find(const struct orl_job *job, struct orl_doubt *dou
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
         result = orl_progress_cancelled(job->progress)
                      ? ORL_ERR_CANCELLED
-                     : orl_doubts_look(job, &job->sources[i], &looks[i]);
+                     : find_look(job, &job->sources[i], &looks[i]);
     ORL_THEN(result, find_blurred(job, looks, doubts));
     if (result == ORL_OK)
         find_same(job, looks, doubts);
@@ -105,7 +106,7 @@ enum orl_result orl_count_views(const struct orl_job *job, size_t enough, size_t
         struct orl_look *look = &looks[*views];
         result = orl_progress_cancelled(job->progress)
                      ? ORL_ERR_CANCELLED
-                     : orl_doubts_look(job, &job->sources[i], look);
+                     : find_look(job, &job->sources[i], look);
         bool known = false;
         for (size_t k = 0; result == ORL_OK && k < *views && !known; k++)
             known = orl_look_same_view(&looks[k], look);

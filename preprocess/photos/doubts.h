@@ -5,13 +5,10 @@
 #include "preprocess/job/job.h"
 #include "preprocess/photos/look.h"
 
-// Keeps what `luma`, the picture of a photograph, looks like for orl_doubts_look. What could not be
+// Keeps what `luma`, the picture of a photograph, looks like for the functions below. What could not be
 // kept is only found again.
 void orl_doubts_keep_look(const struct orl_job *job, const struct orl_source *source,
                           const struct orl_image *luma);
-// What a photograph looks like; reads the photograph only when no run has kept its look.
-enum orl_result orl_doubts_look(const struct orl_job *job, const struct orl_source *source,
-                                struct orl_look *look) ORL_CHECK_RESULT;
 bool orl_doubts_has_look(const struct orl_job *job, const struct orl_source *source);
 
 struct orl_doubt {

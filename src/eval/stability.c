@@ -272,7 +272,7 @@ enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_s
     return result;
 }
 
-void orl_stability_frame_finish(struct orl_stability_frame *frame)
+static void frame_finish(struct orl_stability_frame *frame)
 {
     orl_image_finish(&frame->srgb);
     orl_image_finish(&frame->depth);
@@ -352,14 +352,14 @@ enum orl_result orl_stability_run(struct orl_gpu *gpu, struct orl_renderer *rend
             result = ORL_ERR_CANCELLED;
             break;
         }
-        orl_stability_frame_finish(&frames[i % 2]);
+        frame_finish(&frames[i % 2]);
         result = draw(gpu, renderer, params, i, &frames[i % 2], &ms);
         if (result == ORL_OK && i > 0)
             result = orl_stability_compare(log, &frames[(i - 1) % 2], &frames[i % 2], &counts,
                                            &out->steps[i - 1]);
     }
-    orl_stability_frame_finish(&frames[0]);
-    orl_stability_frame_finish(&frames[1]);
+    frame_finish(&frames[0]);
+    frame_finish(&frames[1]);
     if (result != ORL_OK) {
         orl_stability_finish(out);
         return result;

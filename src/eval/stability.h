@@ -85,7 +85,6 @@ struct orl_stability_frame {
     struct orl_image srgb;            // U8 x3
     struct orl_image depth, coverage; // as in struct orl_frame
 };
-void orl_stability_frame_finish(struct orl_stability_frame *frame);
 // Numbers of pixels by the sum of the differences of their three channels.
 struct orl_stability_counts {
     size_t of[3 * 255 + 1];

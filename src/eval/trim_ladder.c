@@ -176,7 +176,7 @@ static bool has_time(const struct trim_search *s)
     return !(s->params->max_frame_ms > 0) || s->first_ms * s->now.slower <= s->params->max_frame_ms;
 }
 
-bool orl_trim_within_budget(const struct trim_search *s)
+static bool within_budget(const struct trim_search *s)
 {
     return orl_trim_has_budget(s) && has_bytes(s) && has_time(s);
 }
@@ -272,7 +272,7 @@ static bool ends(struct trim_search *s)
 {
     if (is_spent(s, time_for_ladder))
         s->trim->complete = false;
-    return !s->trim->complete || orl_trim_within_budget(s);
+    return !s->trim->complete || within_budget(s);
 }
 
 // --- rungs ---
@@ -354,7 +354,7 @@ enum orl_result orl_trim_climb(struct trim_search *s)
         result = climb_ladder(s);
     }
     s->tolerance_db = s->tolerance_ssim = INFINITY; // nothing is taken back
-    if (result == ORL_OK && s->trim->complete && !orl_trim_within_budget(s))
+    if (result == ORL_OK && s->trim->complete && !within_budget(s))
         result = orl_fail(s->source.log, ORL_ERR_DATA,
                           "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
                           "than is allowed", s->source.scene->dir, s->now.bytes / (1 << 20),

@@ -65,7 +65,6 @@ struct trim_search {
 // The i-th of `count` targets, evenly chosen.
 size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count);
 bool orl_trim_has_budget(const struct trim_search *s);
-bool orl_trim_within_budget(const struct trim_search *s);
 // Finds out what of the scene can be made smaller.
 void orl_trim_plan(struct trim_search *s);
 // Takes the parts one after the other, each as far as the tolerances allow; with a budget until it
