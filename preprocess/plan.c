@@ -229,9 +229,9 @@ static void plan_part(struct planner *p, int pass, int part)
         pixels * (PASS_BYTES + (last ? CONFIDENCE_BYTES : 0))));
 }
 
-static json_t *fuse_name(int cluster)
+static json_t *part_name(const char *step, int part)
 {
-    return json_sprintf("fuse-%06d", cluster + 1);
+    return json_sprintf("%s-%06d", step, part + 1);
 }
 
 static json_t *fuse_command(const struct planner *p, int cluster)
@@ -276,7 +276,7 @@ static enum orl_result plan_cluster(struct planner *p, int cluster)
     if (result == ORL_OK)
         json_array_append_new(p->jobs, json_pack(
             "{s:o, s:s, s:o, s:O, s:[s+, s+, s+], s:[s], s:i, s:f, s:f, s:f, s:f}", "name",
-            fuse_name(cluster), "kind", "fuse", "command", fuse_command(p, cluster), "needs",
+            part_name("fuse", cluster), "kind", "fuse", "command", fuse_command(p, cluster), "needs",
             needs, "inputs", p->dir, "/stereo", p->dir, "/images", p->dir, "/sparse", "outputs",
             ORL_FUSE_CLUSTER_PATH(p->dir, p->clusters.size, cluster, ".ply"), "threads", 1, "cpu_s",
             pixels * 1e-6 * FUSE_S_PER_MPX, "memory_bytes",
@@ -307,7 +307,7 @@ static void plan_finish(struct planner *p)
     for (int part = 0; part < p->parts; part++)
         json_array_append_new(needs, job_name(p, p->densify.geometric_passes, part));
     for (int c = 0; p->clusters.count > 1 && c < (int)p->clusters.count; c++)
-        json_array_append_new(needs, fuse_name(c));
+        json_array_append_new(needs, part_name("fuse", c));
     for (size_t i = 0; i < p->photos.count; i++)
         pixels += p->pixels[i];
     bool fuses = p->clusters.count < 2;
@@ -340,11 +340,6 @@ static enum orl_result plan_jobs(struct planner *p)
 }
 
 // --- calibration ---
-
-static json_t *part_name(const char *step, int part)
-{
-    return json_sprintf("%s-%06d", step, part + 1);
-}
 
 // A job of the calibration: its inputs and outputs are below the scene.
 static void plan_step(struct planner *p, enum orl_part_step step, int part, int parts,
