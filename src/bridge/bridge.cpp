@@ -21,12 +21,21 @@ cv::Mat as_mat(const struct orl_image *image)
     return cv::Mat(image->height, image->width, CV_MAKETYPE(depth, image->channels), image->data);
 }
 
-// Runs `filter` on matrices that share the pixels of `from` and `to`. An exception becomes a result
-// code and empties `to`.
+struct shape {
+    int width, height, channels;
+    enum orl_pixel type;
+};
+
+// Makes `to`, and runs `filter` on matrices that share the pixels of `from` and `to`. An exception becomes a result code
+// and empties `to`.
 template <typename Filter>
-enum orl_result run(const struct orl_log *log, const struct orl_image *from, struct orl_image *to,
+enum orl_result run(const struct orl_log *log, const struct orl_image *from, const shape &made, struct orl_image *to,
                     Filter filter)
 {
+    enum orl_result result = orl_image_init(log, to, made.width, made.height, made.channels, made.type);
+    if (result != ORL_OK)
+        return result;
+    result = ORL_ERR_EXTERNAL;
     try {
         cv::Mat source = as_mat(from), target = as_mat(to);
         filter(source, target);
@@ -34,15 +43,14 @@ enum orl_result run(const struct orl_log *log, const struct orl_image *from, str
             return ORL_OK;
         orl_logf(log, ORL_LOG_ERROR, "OpenCV: result of another size or type");
     } catch (const std::bad_alloc &) {
-        orl_image_finish(to);
-        return orl_fail(log, ORL_ERR_MEMORY, "OpenCV: out of memory");
+        result = orl_fail(log, ORL_ERR_MEMORY, "OpenCV: out of memory");
     } catch (const std::exception &error) {
         orl_logf(log, ORL_LOG_ERROR, "OpenCV: %s", error.what());
     } catch (...) {
         orl_logf(log, ORL_LOG_ERROR, "OpenCV: unknown failure");
     }
     orl_image_finish(to);
-    return ORL_ERR_EXTERNAL;
+    return result;
 }
 
 // Silences a warning that OpenCV prints about the tone mapping operators' own arithmetic.
@@ -93,11 +101,8 @@ enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_imag
     *blurred = orl_image();
     ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->data);
     ORL_REQUIRE(log, taps >= 1 && taps <= 255 && taps % 2 == 1 && sigma_px > 0);
-    enum orl_result result = orl_image_init(log, blurred, image->width, image->height,
-                                            image->channels, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
-    return run(log, image, blurred, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, image, {image->width, image->height, image->channels, ORL_PIXEL_F32}, blurred,
+               [&](const cv::Mat &source, cv::Mat &target) {
         cv::GaussianBlur(source, target, cv::Size(taps, taps), sigma_px, sigma_px,
                          cv::BORDER_REPLICATE);
     });
@@ -108,11 +113,7 @@ enum orl_result orl_bridge_median(const struct orl_log *log, const struct orl_im
 {
     *median = orl_image();
     ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->channels == 1 && image->data);
-    enum orl_result result =
-        orl_image_init(log, median, image->width, image->height, 1, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
-    return run(log, image, median,
+    return run(log, image, {image->width, image->height, 1, ORL_PIXEL_F32}, median,
                [](const cv::Mat &source, cv::Mat &target) { cv::medianBlur(source, target, 5); });
 }
 
@@ -121,12 +122,9 @@ enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_im
 {
     *resized = orl_image();
     ORL_REQUIRE(log, image->data);
-    enum orl_result result =
-        orl_image_init(log, resized, width, height, image->channels, image->type);
-    if (result != ORL_OK)
-        return result;
     bool shrinks = width <= image->width && height <= image->height;
-    return run(log, image, resized, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, image, {width, height, image->channels, image->type}, resized,
+               [&](const cv::Mat &source, cv::Mat &target) {
         cv::resize(source, target, target.size(), 0, 0,
                    shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
     });
@@ -137,11 +135,8 @@ enum orl_result orl_bridge_reduce(const struct orl_log *log, const struct orl_im
 {
     *reduced = orl_image();
     ORL_REQUIRE(log, image->data && width <= image->width && height <= image->height);
-    enum orl_result result =
-        orl_image_init(log, reduced, width, height, image->channels, image->type);
-    if (result != ORL_OK)
-        return result;
-    return run(log, image, reduced, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, image, {width, height, image->channels, image->type}, reduced,
+               [&](const cv::Mat &source, cv::Mat &target) {
         // The variance of a box of width w is w * w / 12; that of a triangle of this height is twice it.
         cv::Mat blurred;
         cv::GaussianBlur(source, blurred, cv::Size(0, 0),
@@ -157,11 +152,8 @@ enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_i
 {
     *mapped = orl_image();
     ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->channels == 3 && image->data);
-    enum orl_result result =
-        orl_image_init(log, mapped, image->width, image->height, 3, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
-    return run(log, image, mapped, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, image, {image->width, image->height, 3, ORL_PIXEL_F32}, mapped,
+               [&](const cv::Mat &source, cv::Mat &target) {
         // The operators divide by the range and by the mean.
         double least = 0, most = 0;
         cv::minMaxLoc(source.reshape(1), &least, &most);
@@ -197,10 +189,8 @@ enum orl_result orl_bridge_response(const struct orl_log *log, enum orl_calibrat
 {
     struct orl_image curve;
     ORL_REQUIRE(log, values->type == ORL_PIXEL_U8 && values->channels == 3 && values->data);
-    enum orl_result result = orl_image_init(log, &curve, 1, 256, 3, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
-    result = run(log, values, &curve, [&](const cv::Mat &source, cv::Mat &target) {
+    enum orl_result result = run(log, values, {1, 256, 3, ORL_PIXEL_F32}, &curve,
+                                 [&](const cv::Mat &source, cv::Mat &target) {
         std::vector<cv::Mat> images;
         for (int y = 0; y < source.rows; y++)
             images.push_back(source.row(y));
@@ -227,11 +217,8 @@ enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_ima
     if (image->width >= SHRT_MAX || image->height >= SHRT_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "a picture of %dx%d pixels is too large here",
                         image->width, image->height);
-    enum orl_result result =
-        orl_image_init(log, remapped, map->width, map->height, image->channels, image->type);
-    if (result != ORL_OK)
-        return result;
-    return run(log, image, remapped, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, image, {map->width, map->height, image->channels, image->type}, remapped,
+               [&](const cv::Mat &source, cv::Mat &target) {
         cv::remap(source, target, as_mat(map), cv::noArray(), cv::INTER_LINEAR,
                   cv::BORDER_CONSTANT, cv::Scalar());
     });
@@ -243,11 +230,8 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
 {
     *cleaned = orl_image();
     ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    enum orl_result result =
-        orl_image_init(log, cleaned, mask->width, mask->height, 1, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        return result;
-    return run(log, mask, cleaned, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, mask, {mask->width, mask->height, 1, ORL_PIXEL_U8}, cleaned,
+               [&](const cv::Mat &source, cv::Mat &target) {
         source.copyTo(target);
         if (cleaning->open_px > 1)
             cv::morphologyEx(target, target, cv::MORPH_OPEN, disc(cleaning->open_px));
@@ -262,11 +246,10 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
 enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_image *mask,
                                   int *largest, int *at_border)
 {
-    struct orl_image none = orl_image();
-    none.channels = 1;
+    struct orl_image none; // the pieces are no picture
     *largest = *at_border = 0;
     ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    return run(log, mask, &none, [&](const cv::Mat &source, cv::Mat &) {
+    enum orl_result result = run(log, mask, {1, 1, 1, ORL_PIXEL_U8}, &none, [&](const cv::Mat &source, cv::Mat &) {
         cv::Mat labels, stats, centroids;
         int count = cv::connectedComponentsWithStats(source != 0, labels, stats, centroids, 8);
         for (int i = 1; i < count; i++) { // piece 0 is what is outside
@@ -278,6 +261,8 @@ enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_im
             *at_border = std::max(*at_border, inside ? 0 : area);
         }
     });
+    orl_image_finish(&none);
+    return result;
 }
 
 enum orl_result orl_bridge_label(const struct orl_log *log, const struct orl_image *mask,
@@ -286,11 +271,8 @@ enum orl_result orl_bridge_label(const struct orl_log *log, const struct orl_ima
     *labels = orl_image();
     *count = 0;
     ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    enum orl_result result =
-        orl_image_init(log, labels, mask->width, mask->height, 1, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
-    return run(log, mask, labels, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, mask, {mask->width, mask->height, 1, ORL_PIXEL_F32}, labels,
+               [&](const cv::Mat &source, cv::Mat &target) {
         cv::Mat numbers;
         int pieces = cv::connectedComponents(source != 0, numbers, 4, CV_32S);
         numbers.convertTo(target, CV_32F);
@@ -303,11 +285,8 @@ enum orl_result orl_bridge_distance(const struct orl_log *log, const struct orl_
 {
     *distance = orl_image();
     ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    enum orl_result result =
-        orl_image_init(log, distance, mask->width, mask->height, 1, ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
-    return run(log, mask, distance, [&](const cv::Mat &source, cv::Mat &target) {
+    return run(log, mask, {mask->width, mask->height, 1, ORL_PIXEL_F32}, distance,
+               [&](const cv::Mat &source, cv::Mat &target) {
         // Each distance is to the nearest pixel of the other side, half a pixel past the outline.
         cv::Mat to_subject, to_outside;
         double most = std::max(source.rows, source.cols);
