@@ -1,15 +1,12 @@
 #include "scene/point_radii.h"
 
-#include <flann/flann.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "core/memory.h"
 #include "core/order.h"
-#include "scene/alike_points.h"
+#include "scene/nearest_points.h"
 
 enum { CHUNK = 1 << 15 }; // points between two reports of progress and checks for cancellation
 
@@ -20,9 +17,7 @@ struct search {
     size_t viewer_count;
     int neighbours; // excluding the point itself
     float overlap;
-    struct FLANNParameters flann;
-    struct few_alike few; // what is searched among
-    flann_index_t index;
+    struct point_search near;
     int *found;   // CHUNK * (neighbours + 1)
     float *dist2; // squared distances, as many
 };
@@ -105,47 +100,10 @@ static void fit_normal(const struct search *s, size_t i, const int *found)
         s->points->normal[i][k] = (float)(sign * axis[k]);
 }
 
-static enum orl_result search_open(struct search *s)
-{
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    s->flann = DEFAULT_FLANN_PARAMETERS;
-    s->flann.algorithm = FLANN_INDEX_KDTREE_SINGLE;
-    s->flann.checks = FLANN_CHECKS_UNLIMITED; // an exact search
-    s->flann.sorted = 1;
-    s->flann.leaf_max_size = 10;
-    s->flann.log_level = FLANN_LOG_NONE;
-    s->flann.cores = cores > 0 && cores < 256 ? (int)cores : 2;
-    float speedup;
-    ORL_TRY(orl_points_few_alike(s->log, s->points, (unsigned)s->neighbours + 1, &s->few));
-    s->index = flann_build_index((float *)(uintptr_t)s->few.position, (int)s->few.count, 3,
-                                 &speedup, &s->flann);
-    if (!s->index)
-        return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot index %zu points",
-                        s->points->count);
-    s->found = orl_array(s->log, (size_t)CHUNK * ((size_t)s->neighbours + 1), sizeof *s->found);
-    s->dist2 = orl_array(s->log, (size_t)CHUNK * ((size_t)s->neighbours + 1), sizeof *s->dist2);
-    return s->found && s->dist2 ? ORL_OK : ORL_ERR_MEMORY;
-}
-
-static void search_close(struct search *s)
-{
-    if (s->index)
-        flann_free_index(s->index, &s->flann);
-    orl_few_alike_finish(&s->few);
-    free(s->found);
-    free(s->dist2);
-}
-
 static enum orl_result search_chunk(struct search *s, size_t first, size_t count)
 {
     size_t columns = (size_t)s->neighbours + 1;
-    memset(s->found, 0xff, count * columns * sizeof *s->found); // -1: no neighbour
-    if (flann_find_nearest_neighbors_index(s->index, s->points->position[first], (int)count,
-                                           s->found, s->dist2, (int)columns, &s->flann) != 0)
-        return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN cannot search its index");
-    for (size_t i = 0; i < count * columns; i++)
-        if ((s->found[i] = orl_few_alike_point(&s->few, s->found[i])) < 0)
-            return orl_fail(s->log, ORL_ERR_EXTERNAL, "FLANN found a point that is not there");
+    ORL_TRY(orl_point_search_find(&s->near, s->points->position + first, count, s->found, s->dist2));
     for (size_t i = 0; i < count; i++) {
         // The point itself is found too, at distance zero, so the last column is the k-th
         // neighbour.
@@ -214,7 +172,10 @@ enum orl_result orl_points_set_some_radii(const struct orl_log *log,
         .log = log, .points = points, .viewers = viewers, .viewer_count = viewer_count,
         .neighbours = others < (size_t)params->neighbours ? (int)others : params->neighbours,
         .overlap = params->overlap};
-    enum orl_result result = search_open(&s);
+    s.found = orl_array(log, (size_t)CHUNK * ((size_t)s.neighbours + 1), sizeof *s.found);
+    s.dist2 = orl_array(log, (size_t)CHUNK * ((size_t)s.neighbours + 1), sizeof *s.dist2);
+    enum orl_result result = s.found && s.dist2 ? ORL_OK : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_point_search_open(log, points, s.neighbours + 1, &s.near));
     for (size_t first = 0; result == ORL_OK && first < own; first += CHUNK) {
         orl_progress_report(progress, "radii", (double)first, (double)own, NULL);
         size_t count = own - first < CHUNK ? own - first : CHUNK;
@@ -223,8 +184,9 @@ enum orl_result orl_points_set_some_radii(const struct orl_log *log,
     }
     ORL_THEN(result, fill_radii(&s, own));
     if (result == ORL_OK)
-        orl_progress_report(progress, "radii", (double)own, (double)own,
-                            NULL);
-    search_close(&s);
+        orl_progress_report(progress, "radii", (double)own, (double)own, NULL);
+    orl_point_search_close(&s.near);
+    free(s.found);
+    free(s.dist2);
     return result;
 }

@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include "core/order.h"
-#include "scene/alike_points.h"
 #include "scene/nearest_points.h"
 #include "scene/radius_limits.h"
 #include "test.h"
@@ -56,7 +55,7 @@ static void of_a_heap_a_few_are_searched(void **state)
     assert_int_equal(orl_points_few_alike(NULL, &points, 3, &few), ORL_OK);
     assert_int_equal(few.count, 5);
     for (int i = 0; i < 5; i++) {
-        assert_int_equal(orl_few_alike_point(&few, i), kept[i]);
+        assert_int_equal(few.index[i], kept[i]);
         assert_memory_equal(few.position[i], points.position[kept[i]], sizeof few.position[i]);
     }
     orl_few_alike_finish(&few);
