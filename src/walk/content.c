@@ -10,6 +10,7 @@
 #include "render/photos/photo_loader.h"
 #include "walk/choices.h"
 #include "walk/internal.h"
+#include "walk/publish.h"
 #include "walk/web_table.h"
 
 enum { MAP_POINTS = 16000 };
@@ -106,13 +107,59 @@ enum orl_result orl_content_change(struct content *content, json_t *settings)
     return make_texts(content);
 }
 
+// --- the published site ---
+
+static void forget_site(struct content *content)
+{
+    for (size_t i = 0; content->site && i < content->site_paths.count; i++)
+        free(content->site[i].data);
+    free(content->site);
+    content->site = NULL;
+    orl_names_finish(&content->site_paths);
+}
+
+static enum orl_result read_site(struct content *content, const char *dir)
+{
+    static const size_t file_max = (size_t)1 << 30;
+    const struct orl_names *paths = &content->site_paths;
+    ORL_TRY(orl_site_files(content->log, dir, true, &content->site_paths));
+    content->site = orl_array(content->log, paths->count, sizeof *content->site);
+    ORL_TRY_MEMORY(content->site);
+    for (size_t i = 0; i < paths->count; i++)
+        ORL_TRY(orl_file_read(content->log, ORL_PATH(dir, "%s", paths->items[i]), file_max, &content->site[i].data,
+                              &content->site[i].size));
+    return ORL_OK;
+}
+
+enum orl_result orl_content_publish(struct content *content, struct orl_gpu *gpu, struct orl_scene *scene, bool radiance,
+                                    const struct orl_progress *progress)
+{
+    const struct orl_log *log = content->log;
+    struct orl_publish_report report;
+    char *dir = NULL;
+    ORL_TRY(orl_dir_make_temporary(log, "walk", &dir));
+    const char *site = ORL_PATH(dir, "site");
+    struct orl_publish_params params = {ORL_PUBLISH_DEFAULTS};
+    params.out = site;
+    params.radiance = radiance;
+    params.progress = progress;
+    enum orl_result result = orl_publish(gpu, scene, &params, &report);
+    ORL_THEN(result, read_site(content, site));
+    if (orl_dir_remove(log, dir) != ORL_OK && result == ORL_OK)
+        result = ORL_ERR_IO;
+    if (result != ORL_OK)
+        forget_site(content);
+    free(dir);
+    return result;
+}
+
 void orl_content_finish(struct content *content)
 {
     free(content->index);
     free(content->manifest);
     free(content->photos);
     json_decref(content->settings);
-    orl_site_table_finish(&content->site);
+    forget_site(content);
     *content = (struct content){0};
 }
 
@@ -202,16 +249,16 @@ static const char *type_of(const char *path)
     return "text/plain";
 }
 
-// A file of the published site, from the table of its names.
 static enum orl_result find_in_site(const struct content *content, const char *path,
                                     struct content_file *file)
 {
-    const struct site_file *found = orl_site_table_find(&content->site, path);
-    if (!found)
-        return ORL_ERR_NOT_FOUND;
-    *file = (struct content_file){.type = type_of(path), .data = found->data,
-                                  .size = found->size, .is_private = true};
-    return ORL_OK;
+    for (size_t i = 0; i < content->site_paths.count; i++)
+        if (strcmp(content->site_paths.items[i], path) == 0) {
+            *file = (struct content_file){.type = type_of(path), .data = content->site[i].data,
+                                          .size = content->site[i].size, .is_private = true};
+            return ORL_OK;
+        }
+    return ORL_ERR_NOT_FOUND;
 }
 
 enum orl_result orl_content_find(const struct content *content, const char *path,

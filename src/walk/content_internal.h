@@ -5,7 +5,14 @@
 #include <jansson.h>
 
 #include "eval/choice.h"
-#include "walk/site_table.h"
+#include "oriel/names.h"
+#include "oriel/progress.h"
+
+// A file of the published site.
+struct site_file {
+    uint8_t *data; // owned
+    size_t size;
+};
 
 struct content {
     const struct orl_log *log;
@@ -17,7 +24,10 @@ struct content {
     char *index, *manifest; // owned
     size_t *photos;         // owned: index in the scene for each of the page's photographs
     size_t photo_count;
-    struct site_table site; // owned: empty until a client asks for it; then it does not change
+    // The data of the published site, for pages that draw by themselves; empty until a client asks for it, then it does not
+    // change.
+    struct orl_names site_paths; // relative to the site
+    struct site_file *site;      // owned: one for each path
 };
 
 struct content_file {
@@ -36,6 +46,10 @@ enum orl_result orl_content_init(const struct orl_log *log, const struct orl_sce
 // Saves settings from a client with the scene, and shows them from now on. ORL_ERR_FORMAT: they are
 // not valid, and nothing has changed.
 enum orl_result orl_content_change(struct content *content, json_t *settings) ORL_CHECK_RESULT;
+// Publishes the scene into a private folder for temporary files, and keeps its data: manifest, shaders, points, photographs and
+// their depth. The folder is gone when this returns. scene: the content's.
+enum orl_result orl_content_publish(struct content *content, struct orl_gpu *gpu, struct orl_scene *scene, bool radiance,
+                                    const struct orl_progress *progress) ORL_CHECK_RESULT;
 void orl_content_finish(struct content *content);
 // `path` as in a request, starting with its slash. ORL_ERR_NOT_FOUND, not logged: no such file.
 enum orl_result orl_content_find(const struct content *content, const char *path,

@@ -303,7 +303,7 @@ static bool someone_asks_site(const struct server *server)
 static bool take_site_request(const struct server *server, struct session *session)
 {
     session->asks_site = true;
-    return !server->content.site.count || tell_site_ready(server) == ORL_OK;
+    return !server->content.site || tell_site_ready(server) == ORL_OK;
 }
 
 // --- messages ---
@@ -623,11 +623,8 @@ static bool site_cancelled(void *priv)
 static void make_site(struct server *server)
 {
     const struct orl_progress progress = {report_site, site_cancelled, server};
-    struct site_table table;
-    enum orl_result result = orl_site_table_make(server->walk.gpu, server->walk.scene,
-                                                 server->params->radiance, &progress, &table);
-    if (result == ORL_OK)
-        server->content.site = table;
+    enum orl_result result = orl_content_publish(&server->content, server->walk.gpu, server->walk.scene,
+                                                 server->params->radiance, &progress);
     if (server->result != ORL_OK)
         return;
     json_t *problem = json_pack("{s:s}", "problem", orl_result_message(result));

@@ -111,12 +111,12 @@ static void use_message(struct content *content, struct orl_choice *choice, cons
     json_decref(root);
 }
 
-// The published site, as if it were one file.
-static struct site_table one_file(void)
+// Gives the content a published site of one file.
+static void add_site(struct content *content)
 {
-    struct site_table site = {calloc(1, sizeof *site.files), 1, 1};
-    site.files[0] = (struct site_file){strdup("points/coarse.bin"), calloc(4, 1), 4};
-    return site;
+    fuzz_require(orl_names_add(NULL, &content->site_paths, "points/coarse.bin") == ORL_OK, "memory");
+    content->site = calloc(1, sizeof *content->site);
+    content->site[0] = (struct site_file){calloc(4, 1), 4};
 }
 
 // Serves a scene with the walk.json that is there. message: of a client; NULL: none.
@@ -131,7 +131,7 @@ static void walk(const struct orl_bytes *message)
                  "a scene has a method");
     if (orl_content_init(&fuzz_log, scene, NULL, true, &choice, &content) == ORL_OK) {
         struct orl_view view;
-        content.site = one_file();
+        add_site(&content);
         if (orl_walk_settings_start(content.settings, &scene->photos[0].view.camera, &view))
             fuzz_require(!orl_view_problem(&view), "the start view is usable");
         if (message)
