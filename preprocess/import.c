@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "preprocess/import/import_internal.h"
 #include "preprocess/import_densify.h"
-#include "scene/hull.h"
+#include "scene/cones.h"
 
 static enum orl_result check_params(const struct orl_log *log, const struct orl_import_params *p)
 {

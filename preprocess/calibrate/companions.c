@@ -1,7 +1,7 @@
 #include "preprocess/calibrate/companions.h"
 
-#include "scene/linear.h"
-#include "scene/remap.h"
+#include "io/exr.h"
+#include "scene/colmap.h"
 #include "preprocess/photos/develop.h"
 
 // To the pixels that the photograph has in `model`.

@@ -4,7 +4,7 @@
 
 #include "oriel/points.h"
 #include "preprocess/cloud/fuse_maps.h"
-#include "scene/hull.h"
+#include "scene/cones.h"
 
 // What a silhouette says of a place.
 enum orl_silhouette_test { ORL_SILHOUETTE_UNSEEN, ORL_SILHOUETTE_OUTSIDE, ORL_SILHOUETTE_INSIDE };

@@ -4,7 +4,7 @@
 
 #include "oriel/points.h"
 #include "preprocess/job/job.h"
-#include "scene/hull.h"
+#include "scene/cones.h"
 
 struct orl_silhouettes {
     struct orl_silhouette *items;          // owned, masks too

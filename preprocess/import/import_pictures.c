@@ -5,8 +5,8 @@
 #include "core/memory.h"
 #include "io/mask.h"
 #include "io/picture.h"
-#include "scene/linear.h"
-#include "scene/remap.h"
+#include "io/exr.h"
+#include "scene/colmap.h"
 #include "preprocess/import/import_internal.h"
 #include "scene/silhouette.h"
 

@@ -9,7 +9,7 @@
 #include "core/new_dir.h"
 #include "hdr/internal.h"
 #include "io/picture.h"
-#include "scene/linear.h"
+#include "io/exr.h"
 #include "scene/subset.h"
 
 enum { JPEG_QUALITY = 97 };

@@ -47,6 +47,10 @@ bool orl_exr_add_channel(struct orl_exr_params *params, const char *name, bool h
 // Writes a file of scanlines, atomically.
 enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
                               const struct orl_exr_params *params) ORL_CHECK_RESULT;
+// Writes a photograph as linear light, where the original has more than 8 bits (docs/reference/files.md, images_linear): half
+// floats, channels R G B.
+enum orl_result orl_linear_write(const struct orl_log *log, const char *path,
+                                 const struct orl_image *image) ORL_CHECK_RESULT;
 // Reads the size of the first part's data window from the header.
 enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *width,
                              int *height) ORL_CHECK_RESULT;

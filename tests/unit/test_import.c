@@ -10,7 +10,7 @@
 #include "preprocess/import/import_internal.h"
 #include "oriel/scene.h"
 #include "render/photos/photo_loader.h"
-#include "scene/linear.h"
+#include "io/exr.h"
 #include "scene/silhouette.h"
 #include "test.h"
 
