@@ -6,7 +6,7 @@
 #include "cli/help.h"
 #include "core/file.h"
 #include "core/memory.h"
-#include "scene/light.h"
+#include "scene/meter.h"
 
 ORL_OPTION_ROWS(common_option_rows, common_options, COMMON_OPTIONS)
 

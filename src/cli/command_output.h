@@ -28,7 +28,7 @@
 #define TEXTURES_OPTION(ROW) \
     ROW(textures, "textures", CHOICE(orl_textures, ORL_TEXTURES, ORL_TEXTURES_AUTO, "KIND"), \
         "photographs on the device")
-// Of the photograph that orl_scene_set_light (scene/light.h) takes.
+// Of the photograph that orl_scene_set_light (scene/meter.h) takes.
 #define LIGHT_OPTION(ROW) \
     ROW(light, "light", TEXT("PHOTO"), \
         "show the scene in this photograph's exposure and white balance")

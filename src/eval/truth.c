@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "io/exr.h"
 #include "io/picture.h"
-#include "scene/remap.h"
+#include "scene/colmap.h"
 
 static bool same_stem(const char *a, const char *b)
 {

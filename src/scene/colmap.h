@@ -4,6 +4,7 @@
 #ifndef ORL_SCENE_COLMAP_H
 #define ORL_SCENE_COLMAP_H
 
+#include "scene/colmap.h"
 #include "oriel/image.h"
 #include "oriel/camera.h"
 
@@ -88,5 +89,13 @@ enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
                                     struct orl_image *image) ORL_CHECK_RESULT;
 enum orl_result orl_colmap_map_write(const struct orl_log *log, const char *path,
                                      const struct orl_image *image) ORL_CHECK_RESULT;
+
+// Makes the picture that camera `to` would have taken from the same place, of any pixel type.
+// `image` has the size of camera `from`. Resampling is bilinear, and black where `from` saw
+// nothing. Where `to` is coarser, the picture is undistorted at the resolution of `from` and then
+// reduced to the size of `to`, as COLMAP does.
+enum orl_result orl_undistort(const struct orl_log *log, const struct orl_colmap_camera *from,
+                              const struct orl_camera *to, const struct orl_image *image,
+                              struct orl_image *undistorted) ORL_CHECK_RESULT;
 
 #endif

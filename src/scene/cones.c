@@ -6,6 +6,7 @@
 
 #include "bridge/bridge.h"
 #include "core/memory.h"
+#include "scene/isosurface.h"
 
 void orl_cones_finish(struct cones *cones)
 {
@@ -207,11 +208,21 @@ static enum orl_result find_place(const struct orl_log *log, const struct orl_si
     return result;
 }
 
+// True if the subject leaves the picture: the largest piece of the mask touches its border, or another one at least half as
+// large does. Smaller ones at the border are more likely things of the background that moved.
+static enum orl_result is_open(const struct orl_log *log, const struct orl_image *mask, bool *open)
+{
+    int largest, at_border;
+    enum orl_result result = orl_bridge_pieces(log, mask, &largest, &at_border);
+    *open = result == ORL_OK && at_border > 0 && 2 * at_border >= largest;
+    return result;
+}
+
 enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhouette *silhouette,
                               struct cone *cone)
 {
     *cone = (struct cone){.view = silhouette->view};
-    ORL_TRY(orl_silhouette_is_open(log, &silhouette->mask, &cone->open));
+    ORL_TRY(is_open(log, &silhouette->mask, &cone->open));
     return orl_bridge_distance(log, &silhouette->mask, &cone->distance);
 }
 
@@ -252,5 +263,37 @@ enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silho
     ORL_THEN(result, orl_hull_field_mesh(log, &cube, field, triangles, mesh));
     free(field);
     orl_cones_finish(&cones);
+    return result;
+}
+
+// --- the surface ---
+
+enum orl_result orl_hull_field_mesh(const struct orl_log *log, const struct orl_hull *cube,
+                                    const float *field, size_t triangles, struct orl_mesh *mesh)
+{
+    // Samples are the voxels' centres, with a border of samples outside the subject around.
+    int n = cube->side + 2;
+    size_t side = (size_t)cube->side, count = (size_t)n * (size_t)n * (size_t)n;
+    memset(mesh, 0, sizeof *mesh);
+    float *value = orl_array(log, count, sizeof *value);
+    ORL_TRY_MEMORY(value);
+    for (size_t i = 0; i < count; i++)
+        value[i] = (float)cube->voxel;
+    for (size_t z = 0; z < side; z++)
+        for (size_t y = 0; y < side; y++)
+            memcpy(value + 1 + (size_t)n * (y + 1 + (size_t)n * (z + 1)),
+                   field + side * (y + side * z), side * sizeof *value);
+    struct orl_grid grid = {.size = {n, n, n}, .spacing = cube->voxel, .value = value};
+    for (int k = 0; k < 3; k++)
+        grid.origin[k] = cube->origin[k] - 0.5 * cube->voxel;
+    enum orl_result result = orl_isosurface(log, &grid, mesh);
+    free(value);
+    if (result == ORL_OK && !mesh->triangle_count)
+        result = orl_fail(log, ORL_ERR_DATA, "the hull is empty");
+    if (result == ORL_OK && triangles)
+        result = orl_mesh_decimate(log, triangles, mesh);
+    ORL_THEN(result, orl_mesh_set_normals(log, mesh));
+    if (result != ORL_OK)
+        orl_mesh_finish(mesh);
     return result;
 }

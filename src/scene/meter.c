@@ -51,3 +51,60 @@ double orl_picture_metered(const struct orl_image *color)
                           x + 0.5, y + 0.5, color->width, color->height);
     return orl_meter_log2(&meter);
 }
+
+// --- the light that a scene is shown in ---
+
+enum orl_result orl_scene_set_light(const struct orl_log *log, struct orl_scene *scene,
+                                    const char *photo)
+{
+    if (!photo)
+        return ORL_OK;
+    int index = orl_scene_find_photo(scene, photo);
+    if (index < 0)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--light %s: there is no such photograph", photo);
+    if (scene->photos[index].test)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--light %s: this photograph is held out", photo);
+    float light[3];
+    for (int c = 0; c < 3; c++)
+        light[c] = scene->photos[index].gain[c];
+    // Renderings become darker by this, and what meters them follows.
+    float darker_ev = log2f(orl_luminance(light));
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        for (int c = 0; c < 3; c++)
+            scene->photos[i].gain[c] /= light[c];
+        scene->photos[i].metered_ev -= darker_ev;
+    }
+    return ORL_OK;
+}
+
+// --- exposures on purpose ---
+
+static const double APART_EV = 1.5, LEAST_SHARE = 0.1;
+
+// Photographs that are not held out, of one series or, below 0, of all. *mean_ev: their mean exposure.
+static size_t count(const struct orl_scene *scene, int series, double *mean_ev)
+{
+    size_t n = 0;
+    *mean_ev = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const struct orl_photo *photo = &scene->photos[i];
+        if (photo->test || (series >= 0 && photo->series != series))
+            continue;
+        n++;
+        *mean_ev += (photo->exposure_ev - *mean_ev) / (double)n;
+    }
+    return n;
+}
+
+bool orl_scene_is_bracketed(const struct orl_scene *scene)
+{
+    double low = INFINITY, high = -INFINITY, mean, all = (double)count(scene, -1, &mean);
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        double of_series = (double)count(scene, scene->photos[i].series, &mean);
+        if (of_series < 2 || of_series < LEAST_SHARE * all)
+            continue;
+        low = fmin(low, mean);
+        high = fmax(high, mean);
+    }
+    return high - low >= APART_EV;
+}

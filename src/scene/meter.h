@@ -28,4 +28,13 @@ double orl_meter_log2(const struct orl_meter *meter);
 // Meters a picture, F32 x3, linear.
 double orl_picture_metered(const struct orl_image *color);
 
+// --- the light that a scene is shown in: the exposure and white balance of one of its photographs ---
+
+// Makes gains relative to the photograph of this name (with or without extension), so that aligned
+// photographs appear in its exposure and white balance and it keeps its own colours. Call before a
+// renderer is created. NULL: the light stays. ORL_ERR_ARGUMENT: there is no such photograph, or it
+// is held out, so that its pixels are not known.
+enum orl_result orl_scene_set_light(const struct orl_log *log, struct orl_scene *scene,
+                                    const char *photo) ORL_CHECK_RESULT;
+
 #endif

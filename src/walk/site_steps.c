@@ -12,7 +12,7 @@
 #include "render/proxy/proxy.h"
 #include "scene/cones.h"
 #include "scene/point_radii.h"
-#include "scene/room_extent.h"
+#include "scene/upright.h"
 #include "walk/internal.h"
 
 enum {

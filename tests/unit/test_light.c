@@ -3,7 +3,7 @@
 
 #include "oriel/render.h"
 #include "render/output/reexpose.h"
-#include "scene/light.h"
+#include "scene/meter.h"
 #include "test.h"
 
 enum { SIDE = 8, COUNT = 3 };

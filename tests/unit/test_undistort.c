@@ -5,7 +5,7 @@
 
 #include "core/process.h"
 #include "io/picture.h"
-#include "scene/remap.h"
+#include "scene/colmap.h"
 
 static char *dir;
 

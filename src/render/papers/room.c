@@ -8,7 +8,7 @@
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/select.h"
-#include "scene/room_extent.h"
+#include "scene/upright.h"
 
 enum orl_result orl_room_resize(const struct frame *frame, struct room *room)
 {
