@@ -1,6 +1,7 @@
 // The page of a site: the files of web/, and the shader functions that the page shares with the
 // renderer. In web/index.html, names in double braces mark what differs between a folder and a
 // single file.
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,57 +22,14 @@ static const char *const shared_shaders[] = {
     "soft/mixed.glsl", "soft/opacity.glsl", "soft/seen.glsl", "soft/shown.glsl", NULL};
 static const size_t FILE_MAX = (size_t)1 << 30;
 
-// --- growing text ---
-
-struct text {
-    const struct orl_log *log;
-    struct orl_bytes bytes;
-    enum orl_result result; // the first failure; nothing is added after it
-};
-
-static void add_bytes(struct text *text, const char *data, size_t size)
-{
-    if (text->result == ORL_OK)
-        text->result = orl_bytes_add(text->log, &text->bytes, data, size);
-}
-
-static void add(struct text *text, const char *string)
-{
-    add_bytes(text, string, strlen(string));
-}
-
-static void add_base64(struct text *text, const uint8_t *data, size_t size)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        size_t left = size - i;
-        uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
-                        (left > 2 ? data[i + 2] : 0);
-        char four[4] = {digits[bits >> 18], digits[bits >> 12 & 63],
-                        left > 1 ? digits[bits >> 6 & 63] : '=', left > 2 ? digits[bits & 63] : '='};
-        add_bytes(text, four, 4);
-    }
-}
-
-static void add_html(struct text *text, const char *string)
-{
-    for (; *string; string++) {
-        if (*string == '<')
-            add(text, "&lt;");
-        else if (*string == '&')
-            add(text, "&amp;");
-        else if (*string == '"')
-            add(text, "&quot;");
-        else
-            add_bytes(text, string, 1);
-    }
-}
-
 // --- the page from web/index.html ---
 
-struct value {
-    const char *key;
-    struct text text;
+struct page {
+    const struct orl_log *log;
+    const char *title, *poster; // poster: "": none
+    const struct site *site;    // whose files the page holds; NULL: it loads them
+    FILE *out;
+    enum orl_result result; // the first failure
 };
 
 // The text of a file of the page. All names are literals; a file that is not embedded is empty.
@@ -83,80 +41,160 @@ static const char *web_file(const char *name)
     return "";
 }
 
-// Fills `page` with the template, each {{key}} replaced by its value.
-static void fill_template(const struct value *values, size_t count, struct text *page)
+static void put_base64(FILE *out, const uint8_t *data, size_t size)
 {
-    const char *rest = web_file(index_name);
-    for (const char *open; (open = strstr(rest, "{{")) != NULL;) {
-        const char *close = strstr(open, "}}");
-        size_t length = close ? (size_t)(close - open) - 2 : 0;
-        add_bytes(page, rest, (size_t)(open - rest));
-        bool found = false;
-        for (size_t i = 0; close && i < count; i++) {
-            const struct value *v = &values[i];
-            if (strlen(v->key) != length || strncmp(v->key, open + 2, length) != 0)
-                continue;
-            found = true;
-            add_bytes(page, v->text.bytes.data, v->text.bytes.size);
-            if (page->result == ORL_OK)
-                page->result = v->text.result;
-        }
-        if (!found && page->result == ORL_OK)
-            page->result = orl_fail(page->log, ORL_ERR_FORMAT, "%s: {{%.*s}} is not known",
-                                    index_name, (int)length, open + 2);
-        rest = close ? close + 2 : open + 2;
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        size_t left = size - i;
+        uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
+                        (left > 2 ? data[i + 2] : 0);
+        char four[4] = {digits[bits >> 18], digits[bits >> 12 & 63],
+                        left > 1 ? digits[bits >> 6 & 63] : '=', left > 2 ? digits[bits & 63] : '='};
+        fwrite(four, 1, sizeof four, out);
     }
-    add(page, rest);
 }
 
-enum { TITLE, ICON, POSTER, STYLE, MODULES, FILES, VALUES };
-
-static void start_values(const struct orl_log *log, const char *title,
-                         struct value values[VALUES])
+static void put_title(struct page *page)
 {
-    static const char *const keys[VALUES] = {"title", "icon", "poster", "style", "modules",
-                                              "files"};
-    for (int i = 0; i < VALUES; i++)
-        values[i] = (struct value){.key = keys[i], .text = {.log = log}};
-    add_html(&values[TITLE].text, title);
+    for (const char *c = page->title; *c; c++) {
+        const char *coded = *c == '<' ? "&lt;" : *c == '&' ? "&amp;" : *c == '"' ? "&quot;" : NULL;
+        fprintf(page->out, "%.*s", coded ? (int)strlen(coded) : 1, coded ? coded : c);
+    }
 }
 
-static void finish_values(struct value values[VALUES])
+static void put_icon(struct page *page)
 {
-    for (int i = 0; i < VALUES; i++)
-        free(values[i].text.bytes.data);
+    fputs(page->site ? "data:," : "icon.svg", page->out);
+}
+
+// A page that holds all files finds the poster among them, so it needs no address for it.
+static void put_poster(struct page *page)
+{
+    fputs(page->poster, page->out);
+}
+
+static void put_style(struct page *page)
+{
+    if (page->site)
+        fprintf(page->out, "<style>%s</style>", web_file("style.css"));
+    else
+        fputs("<link rel=\"stylesheet\" href=\"style.css\">", page->out);
 }
 
 // What is needed is found one after the other, unless the page names all of it.
-static void add_scripts(struct text *text, bool published)
+static void put_scripts(struct page *page)
 {
-    if (published) // of a live walk a token may stand in the address
-        add(text, "<link rel=\"preload\" href=\"manifest.json\" as=\"fetch\" crossorigin>\n");
+    if (*page->poster) // of a live walk a token may stand in the address
+        fputs("<link rel=\"preload\" href=\"manifest.json\" as=\"fetch\" crossorigin>\n", page->out);
+    for (const struct orl_web_file *f = orl_web_table; f->name; f++)
+        if (strncmp(f->name, "js/", 3) == 0)
+            fprintf(page->out, "<link rel=\"modulepreload\" href=\"%s\">\n", f->name);
+    fputs("<script type=\"module\" src=\"js/main.js\"></script>", page->out);
+}
+
+// Puts a module as base64 of a data: address. Such an address is no place to be relative to, so what the module
+// imports as "./NAME" becomes "oriel/NAME".
+static enum orl_result put_module(const struct page *page, const char *module)
+{
+    static const char relative[] = "from \"./", named[] = "from \"oriel/";
+    struct orl_bytes plain = {0};
+    enum orl_result result = ORL_OK;
+    for (const char *at; (at = strstr(module, relative)) != NULL; module = at + strlen(relative)) {
+        ORL_THEN(result, orl_bytes_add(page->log, &plain, module, (size_t)(at - module)));
+        ORL_THEN(result, orl_bytes_add(page->log, &plain, named, strlen(named)));
+    }
+    ORL_THEN(result, orl_bytes_add(page->log, &plain, module, strlen(module)));
+    put_base64(page->out, (const uint8_t *)plain.data, plain.size);
+    free(plain.data);
+    return result;
+}
+
+// Every module under the name by which others import it, or where it is.
+static void put_modules(struct page *page)
+{
+    const char *before = "";
+    if (!page->site) {
+        put_scripts(page);
+        return;
+    }
+    fputs("<script type=\"importmap\">{\"imports\": {", page->out);
     for (const struct orl_web_file *f = orl_web_table; f->name; f++) {
         if (strncmp(f->name, "js/", 3) != 0)
             continue;
-        add(text, "<link rel=\"modulepreload\" href=\"");
-        add(text, f->name);
-        add(text, "\">\n");
+        fprintf(page->out, "%s\n\"oriel/%s\": \"data:text/javascript;base64,", before, f->name + 3);
+        ORL_THEN(page->result, put_module(page, f->text));
+        fputs("\"", page->out);
+        before = ",";
     }
-    add(text, "<script type=\"module\" src=\"js/main.js\"></script>");
+    fputs("\n}}</script>\n<script type=\"module\">import \"oriel/main.js\";</script>", page->out);
+}
+
+static void put_file(struct page *page, const char *path, const char *before)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    ORL_THEN(page->result, orl_file_read(page->log, ORL_PATH(page->site->dir, "%s", path), FILE_MAX, &data, &size));
+    fprintf(page->out, "%s\"%s\": \"", before, path);
+    put_base64(page->out, data, size);
+    fputs("\"", page->out);
+    free(data);
+}
+
+static void put_files(struct page *page)
+{
+    struct orl_names paths = {0};
+    if (!page->site)
+        return;
+    fputs("<script type=\"application/json\" id=\"files\">{", page->out);
+    ORL_THEN(page->result, orl_site_files(page->log, page->site->dir, true, &paths));
+    for (size_t i = 0; i < paths.count && page->result == ORL_OK; i++)
+        put_file(page, paths.items[i], i ? ",\n" : "");
+    fputs("}</script>", page->out);
+    orl_names_finish(&paths);
+}
+
+// Puts what stands in the place of {{key}}.
+static void put_value(struct page *page, const char *key, size_t length)
+{
+    static const struct {
+        const char *key;
+        void (*put)(struct page *page);
+    } values[] = {{"title", put_title}, {"icon", put_icon}, {"poster", put_poster}, {"style", put_style},
+                  {"modules", put_modules}, {"files", put_files}};
+    for (size_t i = 0; i < ORL_COUNT(values); i++)
+        if (strlen(values[i].key) == length && strncmp(values[i].key, key, length) == 0) {
+            values[i].put(page);
+            return;
+        }
+    page->result = orl_fail(page->log, ORL_ERR_FORMAT, "%s: {{%.*s}} is not known", index_name, (int)length, key);
+}
+
+// The text of the page, which the caller releases with free(); NULL, logged: an error, which is page->result.
+static char *make_page(struct page *page, size_t *size)
+{
+    char *text = NULL;
+    const char *rest = web_file(index_name);
+    page->out = open_memstream(&text, size);
+    for (const char *open; page->out && page->result == ORL_OK && (open = strstr(rest, "{{")) != NULL;) {
+        const char *close = strstr(open, "}}");
+        fwrite(rest, 1, (size_t)(open - rest), page->out);
+        put_value(page, open + 2, close ? (size_t)(close - open) - 2 : 0);
+        rest = close ? close + 2 : open + 2;
+    }
+    if (page->out)
+        fputs(rest, page->out);
+    if ((!page->out || fclose(page->out) != 0) && page->result == ORL_OK)
+        page->result = orl_fail(page->log, ORL_ERR_MEMORY, "no memory for the page");
+    if (page->result == ORL_OK)
+        return text;
+    free(text);
+    return NULL;
 }
 
 char *orl_walk_index(const struct orl_log *log, const char *title, const char *poster)
 {
-    struct value values[VALUES];
-    struct text page = {.log = log};
-    start_values(log, title, values);
-    add(&values[POSTER].text, poster);
-    add(&values[STYLE].text, "<link rel=\"stylesheet\" href=\"style.css\">");
-    add(&values[ICON].text, "icon.svg");
-    add_scripts(&values[MODULES].text, *poster != '\0');
-    fill_template(values, VALUES, &page);
-    finish_values(values);
-    if (page.result == ORL_OK)
-        return page.bytes.data;
-    free(page.bytes.data);
-    return NULL;
+    size_t size;
+    return make_page(&(struct page){.log = log, .title = title, .poster = poster}, &size);
 }
 
 // Writes a file that is loaded before the page shows anything.
@@ -217,41 +255,6 @@ enum orl_result orl_site_page(struct site *site)
 
 // --- the site as one file ---
 
-// Adds a module as a data: address. Such an address is no place to be relative to, so what the module
-// imports as "./NAME" becomes "oriel/NAME".
-static void add_module(struct text *text, const char *module)
-{
-    static const char relative[] = "from \"./", named[] = "from \"oriel/";
-    struct text plain = {.log = text->log};
-    for (const char *at; (at = strstr(module, relative)) != NULL; module = at + strlen(relative)) {
-        add_bytes(&plain, module, (size_t)(at - module));
-        add(&plain, named);
-    }
-    add(&plain, module);
-    add_base64(text, (const uint8_t *)plain.bytes.data, plain.bytes.size);
-    if (text->result == ORL_OK)
-        text->result = plain.result;
-    free(plain.bytes.data);
-}
-
-// Adds every module under the name by which others import it.
-static void add_modules(struct text *text)
-{
-    bool first = true;
-    add(text, "<script type=\"importmap\">{\"imports\": {");
-    for (const struct orl_web_file *f = orl_web_table; f->name; f++) {
-        if (strncmp(f->name, "js/", 3) != 0)
-            continue;
-        add(text, first ? "\n\"oriel/" : ",\n\"oriel/");
-        add(text, f->name + 3);
-        add(text, "\": \"data:text/javascript;base64,");
-        add_module(text, f->text);
-        add(text, "\"");
-        first = false;
-    }
-    add(text, "\n}}</script>\n<script type=\"module\">import \"oriel/main.js\";</script>");
-}
-
 // True for data files, which the page requests by name.
 static bool is_data(const char *path)
 {
@@ -289,52 +292,14 @@ enum orl_result orl_site_files(const struct orl_log *log, const char *dir, bool 
     return list_files(log, dir, "", data, paths);
 }
 
-static void add_file(const struct site *site, const char *path, struct text *text)
-{
-    uint8_t *data = NULL;
-    size_t size = 0;
-    if (text->result == ORL_OK)
-        text->result = orl_file_read(site->log, ORL_PATH(site->dir, "%s", path), FILE_MAX, &data, &size);
-    if (data) {
-        add(text, text->bytes.size ? ",\n\"" : "\"");
-        add(text, path);
-        add(text, "\": \"");
-        add_base64(text, data, size);
-        add(text, "\"");
-    }
-    free(data);
-}
-
-static void add_files(const struct site *site, struct text *text)
-{
-    struct orl_names paths = {0};
-    text->result = orl_site_files(site->log, site->dir, true, &paths);
-    for (size_t i = 0; i < paths.count && text->result == ORL_OK; i++)
-        add_file(site, paths.items[i], text);
-    orl_names_finish(&paths);
-}
-
 enum orl_result orl_site_pack(struct site *site, const char *file)
 {
-    struct value values[VALUES];
-    struct text page = {.log = site->log}, files = {.log = site->log};
-    start_values(site->log, site->params->title, values);
-    add(&values[ICON].text, "data:,");
-    add(&values[STYLE].text, "<style>");
-    add(&values[STYLE].text, web_file("style.css"));
-    add(&values[STYLE].text, "</style>");
-    add_modules(&values[MODULES].text);
-    add_files(site, &files);
-    add(&values[FILES].text, "<script type=\"application/json\" id=\"files\">{");
-    add_bytes(&values[FILES].text, files.bytes.data, files.bytes.size);
-    add(&values[FILES].text, "}</script>");
-    // The page finds the poster in its own table of files, so it needs no address for it.
-    fill_template(values, VALUES, &page);
-    enum orl_result result = files.result != ORL_OK ? files.result : page.result;
-    ORL_THEN(result, orl_file_write(site->log, file, page.bytes.data, page.bytes.size));
-    site->report->bytes = site->report->first_bytes = page.bytes.size;
-    finish_values(values);
-    free(files.bytes.data);
-    free(page.bytes.data);
+    struct page page = {.log = site->log, .title = site->params->title, .poster = "", .site = site};
+    size_t size = 0;
+    char *text = make_page(&page, &size);
+    enum orl_result result = page.result;
+    ORL_THEN(result, orl_file_write(site->log, file, text, size));
+    site->report->bytes = site->report->first_bytes = size;
+    free(text);
     return result;
 }
