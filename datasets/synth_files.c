@@ -52,17 +52,11 @@ static enum orl_result write_layers(const struct job *job, int index, const char
                                     bool half)
 {
     struct orl_exr_params exr = {.width = image->width, .height = image->height,
-                                 .channel_count = image->channels,
                                  .attributes = {
                                      .view = &job->views[index],
                                      .srgb_primaries = strcmp(folder, "radiance") == 0}};
-    for (int c = 0; c < image->channels; c++) {
-        struct orl_exr_channel *channel = &exr.channels[c];
-        snprintf(channel->name, sizeof channel->name, "%s", names[c]);
-        channel->half = half;
-        channel->data = image->f32 + c;
-        channel->stride = (size_t)image->channels;
-    }
+    for (int c = 0; c < image->channels; c++)
+        ORL_REQUIRE(job->log, orl_exr_add_channel(&exr, names[c], half, image, c));
     return orl_exr_write(job->log, ORL_PATH(job->truth, "%s/%04d.exr", folder, index + 1), &exr);
 }
 
@@ -95,33 +89,26 @@ static enum orl_result write_truth(const struct job *job, int index,
 static enum orl_result write_colmap_cameras(const struct job *job)
 {
     const struct orl_camera *c = &job->views[0].camera;
-    char *text = orl_format(job->log, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", c->width,
-                            c->height, c->fx, c->fy, c->cx, c->cy);
-    ORL_TRY_MEMORY(text);
-    enum orl_result result = orl_file_write(job->log, ORL_PATH(job->truth, "sparse/cameras.txt"), text, strlen(text));
-    free(text);
-    return result;
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(job->log, ORL_PATH(job->truth, "sparse/cameras.txt"), &file));
+    fprintf(file.stream, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", c->width, c->height, c->fx, c->fy, c->cx, c->cy);
+    return orl_atomic_commit(job->log, &file);
 }
 
 static enum orl_result write_colmap_images(const struct job *job)
 {
-    enum { LINE_MAX_BYTES = 256 };
-    size_t room = (size_t)job->params->count * LINE_MAX_BYTES, length = 0;
-    char *text = orl_array(job->log, room, 1);
-    ORL_TRY_MEMORY(text);
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(job->log, ORL_PATH(job->truth, "sparse/images.txt"), &file));
     for (int i = 0; i < job->params->count; i++) {
         double q[4];
         const double *t = job->views[i].cam_from_world.t;
         orl_pose_to_quat(&job->views[i].cam_from_world, q);
         // The second line of an image lists its sparse points. There are none.
-        length += (size_t)snprintf(text + length, room - length,
-                                   "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %04d.jpg\n\n",
-                                   i + 1, q[0], q[1], q[2], q[3], t[0], t[1], t[2], i + 1);
+        fprintf(file.stream, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %04d.jpg\n\n",
+                i + 1, q[0], q[1], q[2], q[3], t[0], t[1], t[2], i + 1);
     }
-    enum orl_result result = orl_file_write(job->log, ORL_PATH(job->truth, "sparse/images.txt"), text, length);
-    ORL_THEN(result, orl_file_write(job->log, ORL_PATH(job->truth, "sparse/points3D.txt"), "", 0));
-    free(text);
-    return result;
+    ORL_TRY(orl_atomic_commit(job->log, &file));
+    return orl_file_write(job->log, ORL_PATH(job->truth, "sparse/points3D.txt"), "", 0);
 }
 
 // Takes ownership of `root`. A NULL value means that memory ran out.

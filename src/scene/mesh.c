@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "scene/mesh_internal.h"
 
 void orl_mesh_finish(struct orl_mesh *mesh)
@@ -79,43 +80,30 @@ enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
 
 // --- writing ---
 
-static uint8_t *put(uint8_t *at, const void *data, size_t size)
-{
-    memcpy(at, data, size);
-    return at + size;
-}
-
 enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
                                const struct orl_mesh *mesh)
 {
-    enum { HEADER_MAX = 512, FACE_SIZE = 13 };
-    size_t vertex_size = 12 + (mesh->normal ? 12u : 0) + (mesh->color ? 3u : 0);
-    uint8_t *data = orl_array(log, HEADER_MAX + mesh->vertex_count * vertex_size +
-                                       mesh->triangle_count * FACE_SIZE, 1);
-    ORL_TRY_MEMORY(data);
-    int length = snprintf(
-        (char *)data, HEADER_MAX,
-        "ply\nformat binary_little_endian 1.0\nelement vertex %zu\nproperty float x\n"
-        "property float y\nproperty float z\n%s%selement face %zu\n"
-        "property list uchar int vertex_indices\nend_header\n", mesh->vertex_count,
-        mesh->normal ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-        mesh->color ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "",
-        mesh->triangle_count);
-    uint8_t *at = data + length;
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(log, path, &file));
+    fprintf(file.stream,
+            "ply\nformat binary_little_endian 1.0\nelement vertex %zu\nproperty float x\n"
+            "property float y\nproperty float z\n%s%selement face %zu\n"
+            "property list uchar int vertex_indices\nend_header\n", mesh->vertex_count,
+            mesh->normal ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+            mesh->color ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "",
+            mesh->triangle_count);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
-        at = put(at, mesh->position[i], 12);
+        fwrite(mesh->position[i], sizeof *mesh->position, 1, file.stream);
         if (mesh->normal)
-            at = put(at, mesh->normal[i], 12);
+            fwrite(mesh->normal[i], sizeof *mesh->normal, 1, file.stream);
         if (mesh->color)
-            at = put(at, mesh->color[i], 3);
+            fwrite(mesh->color[i], sizeof *mesh->color, 1, file.stream);
     }
     for (size_t i = 0; i < mesh->triangle_count; i++) {
-        *at++ = 3;
-        at = put(at, mesh->triangle[i], 12);
+        fputc(3, file.stream);
+        fwrite(mesh->triangle[i], sizeof *mesh->triangle, 1, file.stream);
     }
-    enum orl_result result = orl_file_write(log, path, data, (size_t)(at - data));
-    free(data);
-    return result;
+    return orl_atomic_commit(log, &file);
 }
 
 // --- geometry ---
@@ -129,8 +117,7 @@ static void face_normal(const struct orl_mesh *mesh, size_t i, double normal[3])
         a[k] = (double)mesh->position[t[1]][k] - (double)mesh->position[t[0]][k];
         b[k] = (double)mesh->position[t[2]][k] - (double)mesh->position[t[0]][k];
     }
-    for (int k = 0; k < 3; k++)
-        normal[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    orl_cross3(a, b, normal);
 }
 
 enum orl_result orl_mesh_set_normals(const struct orl_log *log, struct orl_mesh *mesh)
@@ -150,10 +137,9 @@ enum orl_result orl_mesh_set_normals(const struct orl_log *log, struct orl_mesh 
                 sum[mesh->triangle[i][corner]][k] += face[k];
     }
     for (size_t i = 0; i < mesh->vertex_count; i++) {
-        double length = sqrt(sum[i][0] * sum[i][0] + sum[i][1] * sum[i][1] +
-                             sum[i][2] * sum[i][2]);
+        orl_normalize3(sum[i]);
         for (int k = 0; k < 3; k++)
-            normal[i][k] = length > 0 ? (float)(sum[i][k] / length) : 0;
+            normal[i][k] = (float)sum[i][k];
     }
     free(sum);
     free(mesh->normal);
