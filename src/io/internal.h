@@ -46,26 +46,19 @@ enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path
 enum orl_result orl_png_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                     struct orl_picture_header *header);
 
-// Decode to U8: RGB, or of JPEG with 1 channel the luma that it holds.
+// Decode samples as stored, to U8 RGB, or of JPEG with 1 channel to the luma that it holds. Of PNG also to F32 in [0, 1]: with
+// ORL_PNG_RGB_DEEP always, and with ORL_PNG_RGBA where the file has 16 bits a sample. Alpha is opaque where the file has none.
+enum orl_png_kind { ORL_PNG_RGB, ORL_PNG_RGB_DEEP, ORL_PNG_RGBA };
 enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                 size_t size, int channels, struct orl_image *image);
 enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, struct orl_image *image);
-// Decodes samples as stored: U8 x4, or F32 x4 in [0, 1] where the file has 16 bits a sample. Alpha is
-// opaque where the file has none.
-enum orl_result orl_png_decode_rgba(const struct orl_log *log, const char *path,
-                                    const uint8_t *data, size_t size, struct orl_image *image);
+                               size_t size, enum orl_png_kind kind, struct orl_image *image);
 // True for binary Netpbm files (P4, P5, P6), recognised by their first bytes.
 bool orl_pnm_is(const uint8_t *data, size_t size);
 enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path, FILE *stream,
                                     struct orl_picture_header *header);
 enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, struct orl_image *image);
-// Decodes 8 or 16 bits of sRGB to linear light, F32 x3.
-// as_stored: they are only scaled to [0, 1].
-enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
-                                      const uint8_t *data, size_t size, bool as_stored,
-                                      struct orl_image *image);
 
 // TIFF, RAW and HEIF are read from the file at `path`, as their libraries require. Values are linear
 // light, F32 x3; exif is filled from the header.

@@ -12,7 +12,7 @@
 #include "io/internal.h"
 
 enum format { FORMAT_UNKNOWN, FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW,
-              FORMAT_PNM, FORMAT_HEIF };
+              FORMAT_PNM, FORMAT_HEIF, FORMATS };
 
 static const size_t max_file_bytes = (size_t)1 << 30;
 
@@ -157,40 +157,35 @@ static enum orl_result read_stream_header(const struct orl_log *log, const char 
     return result;
 }
 
-// exif may be NULL.
+static enum orl_result inspect_exr(const struct orl_log *log, const char *path, struct orl_picture_info *info,
+                                   struct orl_exif *exif)
+{
+    (void)exif;
+    *info = (struct orl_picture_info){.bits = 32, .unbounded = true};
+    return orl_exr_size(log, path, &info->width, &info->height);
+}
+
+static enum orl_result read_exr(const struct orl_log *log, const char *path, struct orl_image *image);
+
+// Formats that are read from the file's path alone.
+static const struct {
+    enum orl_result (*inspect)(const struct orl_log *log, const char *path, struct orl_picture_info *info,
+                               struct orl_exif *exif);
+    enum orl_result (*decode_linear)(const struct orl_log *log, const char *path, struct orl_image *image);
+} by_path[FORMATS] = {[FORMAT_TIFF] = {orl_tiff_inspect, orl_tiff_decode_linear},
+                      [FORMAT_HEIF] = {orl_heif_inspect, orl_heif_decode_linear},
+                      [FORMAT_RAW] = {orl_raw_inspect, orl_raw_decode_linear},
+                      [FORMAT_EXR] = {inspect_exr, read_exr}};
+
 static enum orl_result read_header(const struct orl_log *log, const char *path,
                                    struct orl_picture_info *info, struct orl_exif *exif)
 {
-    struct orl_exif unused = {0};
-    if (!exif)
-        exif = &unused;
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
-    enum orl_result result = open_file(log, path, &stream, &format);
-    if (result != ORL_OK)
-        return result;
-    switch (format) {
-    case FORMAT_JPEG:
-    case FORMAT_PNG:
-    case FORMAT_PNM:
-        result = read_stream_header(log, path, stream, format, info, exif);
-        break;
-    case FORMAT_TIFF:
-        result = orl_tiff_inspect(log, path, info, exif);
-        break;
-    case FORMAT_HEIF:
-        result = orl_heif_inspect(log, path, info, exif);
-        break;
-    case FORMAT_RAW:
-        result = orl_raw_inspect(log, path, info, exif);
-        break;
-    case FORMAT_EXR:
-        *info = (struct orl_picture_info){.bits = 32, .unbounded = true};
-        result = orl_exr_size(log, path, &info->width, &info->height);
-        break;
-    default:
-        result = fail_unknown(log, path);
-    }
+    ORL_TRY(open_file(log, path, &stream, &format));
+    enum orl_result result = format == FORMAT_UNKNOWN  ? fail_unknown(log, path)
+                             : by_path[format].inspect ? by_path[format].inspect(log, path, info, exif)
+                                                       : read_stream_header(log, path, stream, format, info, exif);
     info->panorama |= exif->panorama;
     fclose(stream);
     return result;
@@ -199,8 +194,9 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
 enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
                                     struct orl_picture_info *info)
 {
+    struct orl_exif unused = {0};
     memset(info, 0, sizeof *info);
-    enum orl_result result = read_header(log, path, info, NULL);
+    enum orl_result result = read_header(log, path, info, &unused);
     if (result != ORL_OK)
         memset(info, 0, sizeof *info);
     return result;
@@ -280,28 +276,31 @@ static enum orl_result decode_eight(const struct orl_log *log, const struct orl_
     return result;
 }
 
+// Decodes the samples of a JPEG, PNG or PNM file as stored. channels: of JPEG; kind: of PNG
+static enum orl_result decode_file(const struct orl_log *log, const char *path, enum format format, int channels,
+                                   enum orl_png_kind kind, struct orl_image *image)
+{
+    uint8_t *data = NULL;
+    size_t size = 0;
+    ORL_TRY(orl_file_read(log, path, max_file_bytes, &data, &size));
+    enum orl_result result = format == FORMAT_JPEG  ? orl_jpeg_decode(log, path, data, size, channels, image)
+                             : format == FORMAT_PNG ? orl_png_decode(log, path, data, size, kind, image)
+                                                    : orl_pnm_decode(log, path, data, size, image);
+    free(data);
+    return result;
+}
+
 static enum orl_result decode_linear(const struct orl_log *log, const char *path,
                                      enum format format, const struct orl_profile *profile,
                                      struct orl_image *image)
 {
-    if (format == FORMAT_EXR)
-        return read_exr(log, path, image);
-    if (format == FORMAT_TIFF)
-        return orl_tiff_decode_linear(log, path, image);
-    if (format == FORMAT_HEIF)
-        return orl_heif_decode_linear(log, path, image);
-    if (format == FORMAT_RAW)
-        return orl_raw_decode_linear(log, path, image);
+    if (by_path[format].decode_linear)
+        return by_path[format].decode_linear(log, path, image);
     struct orl_image eight = {0};
-    uint8_t *data = NULL;
-    size_t size = 0;
-    enum orl_result result = orl_file_read(log, path, max_file_bytes, &data, &size);
-    if (result == ORL_OK && format == FORMAT_PNG)
-        result = orl_png_decode_linear(log, path, data, size, profile != NULL, image);
-    else if (result == ORL_OK && format == FORMAT_PNM)
-        result = orl_pnm_decode(log, path, data, size, &eight);
-    else if (result == ORL_OK)
-        result = orl_jpeg_decode(log, path, data, size, 3, &eight);
+    enum orl_result result = decode_file(log, path, format, 3, ORL_PNG_RGB_DEEP, format == FORMAT_PNG ? image : &eight);
+    size_t count = result == ORL_OK && image->data && !profile ? orl_image_bytes(image) / sizeof(float) : 0;
+    for (size_t i = 0; i < count; i++)
+        image->f32[i] = orl_srgb_decode(image->f32[i]);
     if (result == ORL_OK && eight.data)
         result = orl_picture_check_memory(log, path, (uint64_t)eight.width,
                                           (uint64_t)eight.height, 3 * sizeof(float));
@@ -310,7 +309,6 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
     if (result == ORL_OK && profile)
         orl_profile_apply(profile, image);
     orl_image_finish(&eight);
-    free(data);
     return result;
 }
 
@@ -361,8 +359,6 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
 {
     memset(image, 0, sizeof *image);
     ORL_REQUIRE(log, channels == 1 || channels == 3);
-    uint8_t *data = NULL;
-    size_t size = 0;
     struct orl_image linear = {0};
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
@@ -372,17 +368,8 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
                               format == FORMAT_PNM);
     orl_profile_destroy(&profile);
     fclose(stream);
-    enum orl_result result = ORL_OK;
-    if (eight)
-        result = orl_file_read(log, path, max_file_bytes, &data, &size);
-    if (result == ORL_OK && !eight)
-        result = orl_picture_read_linear(log, path, &linear);
-    else if (result == ORL_OK && format == FORMAT_JPEG)
-        result = orl_jpeg_decode(log, path, data, size, channels, image);
-    else if (result == ORL_OK && format == FORMAT_PNG)
-        result = orl_png_decode(log, path, data, size, image);
-    else if (result == ORL_OK)
-        result = orl_pnm_decode(log, path, data, size, image);
+    enum orl_result result = eight ? decode_file(log, path, format, channels, ORL_PNG_RGB, image)
+                                   : orl_picture_read_linear(log, path, &linear);
     if (result == ORL_OK && linear.data)
         result = encode_eight(log, &linear, image);
     if (result == ORL_OK && image->channels != channels)
@@ -390,7 +377,6 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     if (result != ORL_OK)
         orl_image_finish(image);
     orl_image_finish(&linear);
-    free(data);
     return result;
 }
 
@@ -418,16 +404,13 @@ enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *pat
 {
     memset(image, 0, sizeof *image);
     struct orl_image from = {0};
-    uint8_t *data = NULL;
-    size_t size = 0;
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
     ORL_TRY(open_file(log, path, &stream, &format));
     fclose(stream);
     enum orl_result result = ORL_OK;
     if (format == FORMAT_PNG) {
-        result = orl_file_read(log, path, max_file_bytes, &data, &size);
-        ORL_THEN(result, orl_png_decode_rgba(log, path, data, size, &from));
+        result = decode_file(log, path, format, 3, ORL_PNG_RGBA, &from);
     } else if (format == FORMAT_JPEG || format == FORMAT_PNM) {
         result = orl_picture_read(log, path, 3, &from);
     } else {
@@ -440,7 +423,6 @@ enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *pat
     if (result != ORL_OK)
         orl_image_finish(image);
     orl_image_finish(&from);
-    free(data);
     return result;
 }
 

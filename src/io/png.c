@@ -6,7 +6,6 @@
 
 #include <png.h>
 
-#include "core/color.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "io/internal.h"
@@ -194,11 +193,11 @@ enum orl_result orl_png_read_header(const struct orl_log *log, const char *path,
 
 // --- pixels ---
 
-// Decodes RGB or RGBA: 8-bit samples, or with `deep` samples of the file's depth in the machine's
-// byte order.
-static enum orl_result decode(struct png_job *job, size_t file_size, int channels, bool deep,
+// Deep samples have the file's depth, in the machine's byte order.
+static enum orl_result decode(struct png_job *job, size_t file_size, enum orl_png_kind kind,
                               struct orl_image *image)
 {
+    int channels = kind == ORL_PNG_RGBA ? 4 : 3;
     // Deflate compresses at most 1032 to 1 (zlib's technical notes).
     const uint64_t max_ratio = 1032;
     if (setjmp(png_jmpbuf(job->png)))
@@ -207,13 +206,15 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
     png_read_info(job->png, job->info);
     png_uint_32 width = png_get_image_width(job->png, job->info);
     png_uint_32 height = png_get_image_height(job->png, job->info);
+    bool sixteen = png_get_bit_depth(job->png, job->info) == 16;
+    bool deep = kind == ORL_PNG_RGB_DEEP || (kind == ORL_PNG_RGBA && sixteen);
     size_t pixel = (size_t)channels * (deep ? sizeof(float) : 1);
     ORL_TRY(orl_picture_check_memory(job->log, job->path, width, height, pixel));
     if ((uint64_t)png_get_rowbytes(job->png, job->info) * height > file_size * max_ratio)
         return orl_fail(job->log, ORL_ERR_FORMAT, "%s: %zu bytes cannot hold %ux%u pixels",
                         job->path, file_size, (unsigned)width, (unsigned)height);
     png_set_expand(job->png);
-    job->wide = deep && png_get_bit_depth(job->png, job->info) == 16;
+    job->wide = deep && sixteen;
     if (!deep)
         png_set_scale_16(job->png); // rounds, unlike strip_16
     else if (job->wide)
@@ -241,16 +242,6 @@ static enum orl_result decode(struct png_job *job, size_t file_size, int channel
     return ORL_OK;
 }
 
-enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, struct orl_image *image)
-{
-    struct png_job job = {.log = log, .path = path, .data = data, .size = size};
-    enum orl_result result = start_reading(&job);
-    ORL_THEN(result, decode(&job, size, 3, false, image));
-    end_reading(&job);
-    return result;
-}
-
 // Converts the samples of a deep picture to floats in place, 1 at white.
 static void to_floats(const struct png_job *job, struct orl_image *image)
 {
@@ -266,33 +257,14 @@ static void to_floats(const struct png_job *job, struct orl_image *image)
     }
 }
 
-enum orl_result orl_png_decode_linear(const struct orl_log *log, const char *path,
-                                      const uint8_t *data, size_t size, bool as_stored,
-                                      struct orl_image *image)
+enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
+                               size_t size, enum orl_png_kind kind, struct orl_image *image)
 {
     struct png_job job = {.log = log, .path = path, .data = data, .size = size};
     enum orl_result result = start_reading(&job);
-    ORL_THEN(result, decode(&job, size, 3, true, image));
+    ORL_THEN(result, decode(&job, size, kind, image));
     end_reading(&job);
-    if (result != ORL_OK)
-        return result;
-    to_floats(&job, image);
-    size_t count = orl_image_bytes(image) / sizeof(float);
-    for (size_t i = 0; !as_stored && i < count; i++)
-        image->f32[i] = orl_srgb_decode(image->f32[i]);
-    return ORL_OK;
-}
-
-enum orl_result orl_png_decode_rgba(const struct orl_log *log, const char *path,
-                                    const uint8_t *data, size_t size, struct orl_image *image)
-{
-    struct png_job job = {.log = log, .path = path, .data = data, .size = size};
-    const size_t depth_at = 24; // of the header, which has a fixed length
-    bool deep = size > depth_at && data[depth_at] == 16;
-    enum orl_result result = start_reading(&job);
-    ORL_THEN(result, decode(&job, size, 4, deep, image));
-    end_reading(&job);
-    if (result == ORL_OK && deep)
+    if (result == ORL_OK && image->type == ORL_PIXEL_F32)
         to_floats(&job, image);
     return result;
 }
