@@ -52,6 +52,8 @@ void orl_pose_to_quat(const struct orl_pose *pose, double quat_wxyz[3 + 1]);
 void orl_pose_move(struct orl_pose *pose, const double origin[3]);
 // Camera centre in world space: -r^T t.
 void orl_pose_centre(const struct orl_pose *pose, double centre[3]);
+// Moves the camera there; it looks the same way.
+void orl_pose_set_centre(struct orl_pose *pose, const double centre[3]);
 // Camera at `eye` looking at `target`, image y along -up.
 struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], const double up[3]);
 void orl_pose_apply(const struct orl_pose *cam_from_world, const double world[3], double cam[3]);

@@ -134,7 +134,7 @@ void orl_pose_centre(const struct orl_pose *pose, double centre[3])
                       pose->r[2][i] * pose->t[2]);
 }
 
-static void set_centre(struct orl_pose *pose, const double centre[3])
+void orl_pose_set_centre(struct orl_pose *pose, const double centre[3])
 {
     for (int i = 0; i < 3; i++)
         pose->t[i] = -orl_dot3(pose->r[i], centre);
@@ -156,7 +156,7 @@ struct orl_pose orl_pose_look_at(const double eye[3], const double target[3], co
     memcpy(pose.r[0], x, sizeof x);
     memcpy(pose.r[1], y, sizeof y);
     memcpy(pose.r[2], z, sizeof z);
-    set_centre(&pose, eye);
+    orl_pose_set_centre(&pose, eye);
     return pose;
 }
 
@@ -196,7 +196,7 @@ struct orl_view orl_view_interpolate(const struct orl_view *a, const struct orl_
     for (int i = 0; i < 3; i++)
         centre[i] = ca[i] + t * (cb[i] - ca[i]);
     orl_pose_from_quat(q, zero, &view.cam_from_world);
-    set_centre(&view.cam_from_world, centre);
+    orl_pose_set_centre(&view.cam_from_world, centre);
     return view;
 }
 

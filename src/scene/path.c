@@ -124,10 +124,7 @@ static enum orl_result spread_frames(const struct orl_log *log, const struct key
         view->camera = orl_camera_reframed(&view->camera, first->camera.width,
                                            first->camera.height);
         spline_centre(keys, segment, t, centre);
-        struct orl_pose *pose = &view->cam_from_world;
-        for (int row = 0; row < 3; row++)
-            pose->t[row] = -(pose->r[row][0] * centre[0] + pose->r[row][1] * centre[1] +
-                             pose->r[row][2] * centre[2]);
+        orl_pose_set_centre(&view->cam_from_world, centre);
     }
     if (result == ORL_OK && (result = check_made(log, path)) != ORL_OK)
         orl_path_finish(path);
@@ -277,8 +274,6 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
                               PATH_VIEWS_MAX);
         else
             result = spread_frames(log, &(struct keys){&read, seconds}, (size_t)count, path);
-        for (size_t i = 0; result == ORL_OK && i < path->count; i++) // a spline may overshoot
-            result = check_view(log, file, "frame", i, true, &path->views[i]);
     } else if (result == ORL_OK) {
         *path = read;
         read = (struct orl_path){0};

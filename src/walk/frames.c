@@ -31,8 +31,7 @@ static bool read_view(const json_t *root, struct orl_view *view)
           size[1] <= SIDE_MAX && size[0] * size[1] <= PIXELS_MAX))
         return false;
     *c = (struct orl_camera){(int)size[0], (int)size[1], focal[0], focal[1], focal[2], focal[3]};
-    for (int i = 0; i < 3; i++)
-        pose->t[i] = -(pose->r[i][0] * eye[0] + pose->r[i][1] * eye[1] + pose->r[i][2] * eye[2]);
+    orl_pose_set_centre(pose, eye);
     return !orl_view_problem(view);
 }
 
@@ -184,12 +183,9 @@ static enum orl_result draw(struct walk_renderer *walk, const struct walk_reques
     params.leave_out = (ORL_LAYER_DEPTH | ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE |
                         ORL_LAYER_CONFIDENCE) & ~layers;
     struct orl_frame frame;
-    enum orl_result result =
-        walk->scene->frame_count ? draw_time_step(walk, request, &params, &frame)
-                                 : draw_timed(walk, request, &params, &outcome->missing, &frame);
-    if (result != ORL_OK)
-        return result;
-    result = orl_tone_apply(walk->log, &frame.color, &request->tone, picture);
+    ORL_TRY(walk->scene->frame_count ? draw_time_step(walk, request, &params, &frame)
+                                     : draw_timed(walk, request, &params, &outcome->missing, &frame));
+    enum orl_result result = orl_tone_apply(walk->log, &frame.color, &request->tone, picture);
     size_t width = (size_t)frame.color.width, count = width * (size_t)frame.color.height;
     for (size_t i = 0; result == ORL_OK && needed[request->layer] && i < count; i++)
         show_pixel(&frame, request->layer, walk->typical, i, picture->u8 + 3 * i);
@@ -252,8 +248,7 @@ static enum orl_result assemble(const struct orl_log *log, const uint32_t header
     size_t head = WALK_FRAME_WORDS * sizeof *header;
     size_t more = header[WALK_FRAME_WORDS - 1] * sizeof *depths;
     frame->data = orl_array(log, before + head + more + jpeg->size, 1);
-    if (!frame->data)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(frame->data);
     memcpy(frame->data + before, header, head);
     memcpy(frame->data + before + head, depths, more);
     memcpy(frame->data + before + head + more, jpeg->data, jpeg->size);
@@ -298,15 +293,14 @@ enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_sc
     static const double max_s = 4; // of processor time: a busy machine gets as far as an idle one
     struct walk_request request = {.quality = 75, .tone = {ORL_TONE_DEFAULTS}};
     size_t start_photo;
-    enum orl_result result = orl_walk_start(walk->log, scene, &start_photo);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_walk_start(walk->log, scene, &start_photo));
     request.view = scene->photos[start_photo].view;
     struct orl_camera *c = &request.view.camera;
     *c = orl_camera_resized(c, WIDTH, WIDTH * c->height / c->width + 1);
     // The first frame compiles the programs, which is no measure of those that follow.
     struct outcome outcome = {.missing = 1};
     double start = 0;
+    enum orl_result result = ORL_OK;
     for (int i = 0; result == ORL_OK && outcome.missing > 0; i++) {
         struct orl_image picture = {0};
         request.at_rest = i % 2 == 0; // both kinds of frames compile their programs
