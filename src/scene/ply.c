@@ -131,18 +131,14 @@ static enum orl_result parse_header(struct orl_ply *ply)
                    strncmp(line, "obj_info", 8) != 0) {
             result = orl_ply_bad(ply, "unknown line in the header");
         }
-        if (result != ORL_OK)
-            return result;
     }
-    return ORL_OK;
+    return result;
 }
 
 enum orl_result orl_ply_open(const struct orl_log *log, const char *path, struct orl_ply *ply)
 {
-    *ply = (struct orl_ply){.log = log, .path = orl_strdup(log, path)};
-    enum orl_result result = ply->path ? orl_file_read(log, path, SIZE_MAX / 2, &ply->data,
-                                                       &ply->size)
-                                       : ORL_ERR_MEMORY;
+    *ply = (struct orl_ply){.log = log, .path = path};
+    enum orl_result result = orl_file_read(log, path, SIZE_MAX / 2, &ply->data, &ply->size);
     ORL_THEN(result, parse_header(ply));
     if (result != ORL_OK)
         orl_ply_close(ply);
@@ -153,10 +149,8 @@ enum orl_result orl_ply_open_header(const struct orl_log *log, const char *path,
                                     struct orl_ply *ply, FILE **stream)
 {
     enum { HEADER_MAX = 1 << 16 };
-    *ply = (struct orl_ply){.log = log, .path = orl_strdup(log, path),
-                            .data = orl_array(log, HEADER_MAX + 1, 1)};
-    enum orl_result result = ply->path && ply->data ? orl_file_open(log, path, stream)
-                                                    : ORL_ERR_MEMORY;
+    *ply = (struct orl_ply){.log = log, .path = path, .data = orl_array(log, HEADER_MAX + 1, 1)};
+    enum orl_result result = ply->data ? orl_file_open(log, path, stream) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         ply->size = fread(ply->data, 1, HEADER_MAX, *stream);
         result = parse_header(ply);
@@ -174,7 +168,6 @@ void orl_ply_close(struct orl_ply *ply)
 {
     for (int i = 0; i < ply->element_count; i++)
         free(ply->elements[i].properties);
-    free(ply->path);
     free(ply->data);
     memset(ply, 0, sizeof *ply);
 }
@@ -304,16 +297,13 @@ enum orl_result orl_ply_seek(struct orl_ply *ply, const char *name, const char *
     *found = NULL;
     if (ply->next > 0)
         finish_line(ply);
-    enum orl_result result = ORL_OK;
     int i = ply->next;
     while (i < ply->element_count && strcmp(ply->elements[i].name, name) != 0)
         i++;
     if (i == ply->element_count)
         return orl_ply_bad(ply, missing);
-    for (; result == ORL_OK && ply->next < i; ply->next++)
-        result = skip(ply, &ply->elements[ply->next]);
-    if (result != ORL_OK)
-        return result;
+    for (; ply->next < i; ply->next++)
+        ORL_TRY(skip(ply, &ply->elements[ply->next]));
     const struct orl_ply_element *element = &ply->elements[ply->next++];
     size_t left = ply->size - ply->at;
     // + ply->ascii: the last line of an ascii file may lack its newline.

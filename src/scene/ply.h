@@ -30,7 +30,7 @@ struct orl_ply_element {
 
 struct orl_ply {
     const struct orl_log *log;
-    char *path;       // owned
+    const char *path; // not owned
     uint8_t *data;    // owned; a zero byte follows
     size_t size, at;  // at: offset of the next byte to read
     bool ascii;
@@ -42,7 +42,7 @@ struct orl_ply {
 // this times f_dc, and a half.
 #define ORL_HARMONIC_0 0.28209479177387814
 
-// Reads the file and its header.
+// Reads the file and its header. The path must outlive the reader.
 enum orl_result orl_ply_open(const struct orl_log *log, const char *path,
                              struct orl_ply *ply) ORL_CHECK_RESULT;
 // Reads the header alone. ply->at is the offset of the first record in the file, whose bytes are not
