@@ -327,19 +327,18 @@ static enum orl_result add_points(const struct orl_log *log, struct orl_scene *s
 static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene, bool points_too,
                             struct orl_colmap_model *model, const struct folder *folder)
 {
-    enum orl_result result;
     bool lod = points_too && folder->manifest && folder->lod;
     const char *points = lod ? folder->lod : folder->manifest ? folder->points : folder->fused;
-    if ((points_too && (result = check_inside(log, scene, points)) != ORL_OK) ||
-        (folder->manifest &&
-         (result = check_inside(log, scene, folder->manifest)) != ORL_OK) ||
-        (result = orl_scene_read_model(log, scene, model)) != ORL_OK ||
-        (result = set_photos(log, scene, model)) != ORL_OK ||
-        (lod && (result = orl_lod_open(log, points, &scene->lod)) != ORL_OK))
-        return result;
-    if (folder->manifest &&
-        (result = orl_manifest_read(log, folder->manifest, points_too && !lod, scene)) != ORL_OK)
-        return result;
+    if (points_too)
+        ORL_TRY(check_inside(log, scene, points));
+    if (folder->manifest)
+        ORL_TRY(check_inside(log, scene, folder->manifest));
+    ORL_TRY(orl_scene_read_model(log, scene, model));
+    ORL_TRY(set_photos(log, scene, model));
+    if (lod)
+        ORL_TRY(orl_lod_open(log, points, &scene->lod));
+    if (folder->manifest)
+        ORL_TRY(orl_manifest_read(log, folder->manifest, points_too && !lod, scene));
     return points_too ? add_points(log, scene, model, points, folder->manifest != NULL) : ORL_OK;
 }
 
@@ -451,13 +450,14 @@ static const char *time_steps_of(const struct orl_scene *scene)
     return scene->time_steps_dir ? scene->time_steps_dir : scene->dir;
 }
 
-// The path "SCENE/" or "SCENE/frames/<number>/", followed by folder, name and ending.
-static struct orl_file_path time_step_path(const struct orl_scene *scene, const char *folder, size_t photo,
-                                      const char *ending)
+// The path "SCENE/", or with `moves` "SCENE/frames/<number>/" of the time step that shows, followed by
+// folder, name and ending.
+static struct orl_file_path photo_path(const struct orl_scene *scene, bool moves, const char *folder, size_t photo,
+                                       const char *ending)
 {
     struct orl_file_path path = {""};
     char frame[32] = "";
-    if (shows_time_step(scene))
+    if (moves && shows_time_step(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
     orl_path_print(path.text, *frame ? time_steps_of(scene) : scene->dir, "%s%s/%s%s", frame, folder,
                    scene->photos[photo].name, ending);
@@ -466,26 +466,22 @@ static struct orl_file_path time_step_path(const struct orl_scene *scene, const 
 
 struct orl_file_path orl_scene_photo_path(const struct orl_scene *scene, size_t photo)
 {
-    return time_step_path(scene, "images", photo, "");
+    return photo_path(scene, true, "images", photo, "");
 }
 
 struct orl_file_path orl_scene_mask_path(const struct orl_scene *scene, size_t photo)
 {
-    return time_step_path(scene, "masks", photo, ".png");
+    return photo_path(scene, true, "masks", photo, ".png");
 }
 
 struct orl_file_path orl_scene_occluders_path(const struct orl_scene *scene, size_t photo)
 {
-    struct orl_file_path path = {""};
-    orl_path_print(path.text, scene->dir, "occluders/%s.png", scene->photos[photo].name);
-    return path;
+    return photo_path(scene, false, "occluders", photo, ".png");
 }
 
 struct orl_file_path orl_scene_background_path(const struct orl_scene *scene, size_t photo)
 {
-    struct orl_file_path path = {""};
-    orl_path_print(path.text, scene->dir, "background/%s.png", scene->photos[photo].name);
-    return path;
+    return photo_path(scene, false, "background", photo, ".png");
 }
 
 struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
@@ -500,7 +496,5 @@ struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
 
 struct orl_file_path orl_scene_linear_path(const struct orl_scene *scene, size_t photo)
 {
-    struct orl_file_path path = {""};
-    orl_path_print(path.text, scene->dir, "images_linear/%s.exr", scene->photos[photo].name);
-    return path;
+    return photo_path(scene, false, "images_linear", photo, ".exr");
 }
