@@ -289,12 +289,10 @@ enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
     struct orl_atomic_file file = {0};
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = drop_error;
-    enum orl_result result = orl_atomic_begin(log, path, &file);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_atomic_begin(log, path, &file));
     errno = 0; // it tells why OpenEXR cannot write
-    result = check(&writer, exr_start_write(&writer.context, file.temp, EXR_WRITE_FILE_DIRECTLY,
-                                            &init));
+    enum orl_result result =
+        check(&writer, exr_start_write(&writer.context, file.temp, EXR_WRITE_FILE_DIRECTLY, &init));
     ORL_THEN(result, write_all(&writer));
     if (writer.pipe_ready)
         exr_encoding_destroy(writer.context, &writer.pipe);

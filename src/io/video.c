@@ -205,9 +205,7 @@ enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_pro
     struct orl_names names = {0};
     struct orl_video video;
     ORL_REQUIRE(log, range->first >= 0 && range->count >= 0 && range->step >= 1);
-    enum orl_result result = orl_video_inspect(log, progress, path, false, &video);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_video_inspect(log, progress, path, false, &video));
     snprintf(most, sizeof most, "%d", range->count ? range->count : INT_MAX);
     char *filters = orl_format(log, "%sselect=gte(n\\,%d)*not(mod(n-%d\\,%d)),%snull",
                                video.first, range->first, range->first, range->step,
@@ -216,8 +214,9 @@ enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_pro
                                 "-i", path, "-map", "0:V:0", "-vf", filters, "-fps_mode", "passthrough",
                                 "-frames:v", most, "-start_number", "0",
                                 ORL_PATH(frames_dir, "%%05d.ppm"), NULL};
-    result = filters ? orl_process_run(log, &(struct orl_process_params){.argv = argv, .progress = progress}, NULL)
-                     : ORL_ERR_MEMORY;
+    enum orl_result result =
+        filters ? orl_process_run(log, &(struct orl_process_params){.argv = argv, .progress = progress}, NULL)
+                : ORL_ERR_MEMORY;
     free(filters);
     ORL_THEN(result, orl_dir_list(log, frames_dir, &names));
     if (result == ORL_OK && !names.count)

@@ -81,13 +81,11 @@ static enum orl_result read_cameras(struct reader *r, struct orl_colmap_model *m
 static enum orl_result read_point(struct reader *r, struct orl_colmap_point *point)
 {
     uint64_t track = 0;
-    enum orl_result result;
-    if ((result = take(r, &point->id, 8, "a point")) != ORL_OK ||
-        (result = take(r, point->position, 24, "a point")) != ORL_OK ||
-        (result = take(r, point->rgb, 3, "a point")) != ORL_OK ||
-        (result = take(r, &point->error_px, 8, "a point")) != ORL_OK ||
-        (result = take_count(r, TRACK_SIZE, "track elements", &track)) != ORL_OK)
-        return result;
+    ORL_TRY(take(r, &point->id, 8, "a point"));
+    ORL_TRY(take(r, point->position, 24, "a point"));
+    ORL_TRY(take(r, point->rgb, 3, "a point"));
+    ORL_TRY(take(r, &point->error_px, 8, "a point"));
+    ORL_TRY(take_count(r, TRACK_SIZE, "track elements", &track));
     r->at += (size_t)track * TRACK_SIZE;
     point->track_length = track > UINT32_MAX ? UINT32_MAX : (uint32_t)track;
     return ORL_OK;
@@ -142,18 +140,15 @@ static enum orl_result read_image(struct reader *r, const struct orl_colmap_mode
 {
     double quat[4], t[3];
     size_t start = r->at;
-    enum orl_result result;
-    if ((result = take(r, &image->id, 4, "a picture")) != ORL_OK ||
-        (result = take(r, quat, sizeof quat, "a picture")) != ORL_OK ||
-        (result = take(r, t, sizeof t, "a picture")) != ORL_OK ||
-        (result = take(r, &image->camera_id, 4, "a picture")) != ORL_OK)
-        return result;
+    ORL_TRY(take(r, &image->id, 4, "a picture"));
+    ORL_TRY(take(r, quat, sizeof quat, "a picture"));
+    ORL_TRY(take(r, t, sizeof t, "a picture"));
+    ORL_TRY(take(r, &image->camera_id, 4, "a picture"));
     if (!orl_pose_from_quat(quat, t, &image->cam_from_world)) {
         r->at = start;
         return bad(r, "a picture's pose is zero, not finite or absurdly far");
     }
-    if ((result = read_name(r, &image->name)) != ORL_OK)
-        return result;
+    ORL_TRY(read_name(r, &image->name));
     return read_observations(r, model, image);
 }
 

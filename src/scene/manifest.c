@@ -24,12 +24,10 @@ static enum orl_result read_exposure(const struct orl_json_place *place, const j
                                      struct orl_photo *photo)
 {
     double gain[3] = {1, 1, 1}, ev = NAN, metering[2] = {0};
-    enum orl_result result;
-    if ((result = orl_json_number(place, entry, "exposure_ev", -64, 64, &ev)) != ORL_OK ||
-        (result = orl_json_integer(place, entry, "series", 0, 65535, &photo->series)) != ORL_OK ||
-        (result = orl_json_numbers(place, entry, "gain", 3, 1e-6, 1e6, gain)) != ORL_OK ||
-        (result = orl_json_numbers(place, entry, "metering", 2, -16, 16, metering)) != ORL_OK)
-        return result;
+    ORL_TRY(orl_json_number(place, entry, "exposure_ev", -64, 64, &ev));
+    ORL_TRY(orl_json_integer(place, entry, "series", 0, 65535, &photo->series));
+    ORL_TRY(orl_json_numbers(place, entry, "gain", 3, 1e-6, 1e6, gain));
+    ORL_TRY(orl_json_numbers(place, entry, "metering", 2, -16, 16, metering));
     photo->has_exposure = !isnan(ev);
     photo->exposure_ev = photo->has_exposure ? ev : 0;
     for (int i = 0; i < 3; i++)
@@ -43,15 +41,12 @@ static enum orl_result read_optics(const struct orl_json_place *place, const jso
                                    const struct orl_scene *scene, struct orl_photo *photo)
 {
     double vignette[3] = {0};
-    enum orl_result result = orl_json_numbers(place, entry, "vignette", 3, -16, 16, vignette);
+    ORL_TRY(orl_json_numbers(place, entry, "vignette", 3, -16, 16, vignette));
     for (int i = 0; i < 3; i++)
         photo->vignette[i] = (float)vignette[i];
-    if (result == ORL_OK && !scene->response_count &&
-        json_is_integer(json_object_get(entry, "response")))
+    if (!scene->response_count && json_is_integer(json_object_get(entry, "response")))
         return orl_json_refuse(place, "response", "one of \"responses\", which are none");
-    return result == ORL_OK ? orl_json_integer(place, entry, "response", 0,
-                                               (int)scene->response_count - 1, &photo->response)
-                            : result;
+    return orl_json_integer(place, entry, "response", 0, (int)scene->response_count - 1, &photo->response);
 }
 
 // Refuses a photograph without the file that scene.json promises.
@@ -64,20 +59,19 @@ static enum orl_result need_file(const struct orl_json_place *place, struct orl_
 static enum orl_result read_mask(const struct orl_json_place *place, const json_t *entry,
                                  const struct orl_scene *scene, struct orl_photo *photo)
 {
-    enum orl_result result = orl_json_bool(place, entry, "mask", &photo->masked);
-    if (result != ORL_OK || !photo->masked)
-        return result;
-    return need_file(place, orl_scene_mask_path(scene, (size_t)(photo - scene->photos)), "this mask is");
+    ORL_TRY(orl_json_bool(place, entry, "mask", &photo->masked));
+    return photo->masked ? need_file(place, orl_scene_mask_path(scene, (size_t)(photo - scene->photos)), "this mask is")
+                         : ORL_OK;
 }
 
 static enum orl_result read_occluders(const struct orl_json_place *place, const json_t *entry,
                                       const struct orl_scene *scene, struct orl_photo *photo)
 {
     double share = 0;
-    enum orl_result result = orl_json_number(place, entry, "occluded", 0, 1, &share);
+    ORL_TRY(orl_json_number(place, entry, "occluded", 0, 1, &share));
     photo->occluded = (float)share;
-    if (result != ORL_OK || !(photo->occluded > 0))
-        return result;
+    if (!(photo->occluded > 0))
+        return ORL_OK;
     return need_file(place, orl_scene_occluders_path(scene, (size_t)(photo - scene->photos)), "these occluders are");
 }
 
@@ -238,14 +232,6 @@ enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *pa
     return ORL_OK;
 }
 
-// Absent: nothing was taken off.
-static enum orl_result read_origin(const struct orl_log *log, const char *path, const json_t *root,
-                                   double origin[3])
-{
-    return orl_json_numbers(&(struct orl_json_place){log, path, NULL}, root, "origin", 3,
-                            -ORL_WORLD_MAX, ORL_WORLD_MAX, origin);
-}
-
 json_t *orl_manifest_origin(const double origin[3])
 {
     return json_pack("[f,f,f]", origin[0], origin[1], origin[2]);
@@ -260,9 +246,8 @@ json_t *orl_manifest_room(const struct orl_room *room)
 
 // Logs and counts each file of DIR that does not match its checksum in the manifest `root`. Checks
 // only the files in the NULL-terminated list `names`, or all files when `names` is NULL.
-static enum orl_result check_files(const struct orl_log *log, const char *dir,
-                                   const json_t *root, const char *const *names,
-                                   enum orl_log_level level, size_t *bad)
+static void check_files(const struct orl_log *log, const char *dir, const json_t *root, const char *const *names,
+                        enum orl_log_level level, size_t *bad)
 {
     const char *name;
     json_t *value;
@@ -284,7 +269,6 @@ static enum orl_result check_files(const struct orl_log *log, const char *dir,
             ++*bad;
         }
     }
-    return ORL_OK;
 }
 
 enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, const json_t *root,
@@ -303,7 +287,9 @@ enum orl_result orl_manifest_take(const struct orl_log *log, const char *path, c
     ORL_TRY(read_ground(log, path, root, &scene->ground));
     ORL_TRY(read_backdrop(log, path, root, &scene->backdrop_rests));
     ORL_TRY(orl_manifest_read_room(log, path, root, &scene->room));
-    return read_origin(log, path, root, scene->origin);
+    // Absent: nothing was taken off.
+    return orl_json_numbers(&(struct orl_json_place){log, path, NULL}, root, "origin", 3, -ORL_WORLD_MAX, ORL_WORLD_MAX,
+                            scene->origin);
 }
 
 enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, bool points,
@@ -316,8 +302,8 @@ enum orl_result orl_manifest_read(const struct orl_log *log, const char *path, b
     json_t *root;
     ORL_TRY(orl_json_read(log, path, &root));
     enum orl_result result = orl_manifest_take(log, path, root, scene);
-    ORL_THEN(result, check_files(log, scene->dir, root, points ? read_on_opening : read_on_opening + 1,
-                                 ORL_LOG_WARNING, &changed));
+    if (result == ORL_OK)
+        check_files(log, scene->dir, root, points ? read_on_opening : read_on_opening + 1, ORL_LOG_WARNING, &changed);
     json_decref(root);
     return result;
 }
@@ -333,13 +319,13 @@ enum orl_result orl_manifest_check(const struct orl_log *log, const char *dir, s
     if (orl_path_is_file(levels) && !orl_path_is_file(ORL_PATH(dir, "points.ply")))
         json_object_del(json_object_get(root, "checksums"), "points.ply");
     *files = json_object_size(json_object_get(root, "checksums"));
-    enum orl_result result = check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
-    if (result == ORL_OK && orl_path_is_file(levels)) {
+    check_files(log, dir, root, NULL, ORL_LOG_ERROR, bad);
+    if (orl_path_is_file(levels)) {
         *files += 1;
         *bad += orl_lod_check(log, levels) != ORL_OK;
     }
     json_decref(root);
-    return result;
+    return ORL_OK;
 }
 
 json_t *orl_manifest_ground(const struct orl_ground *ground)

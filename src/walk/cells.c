@@ -218,8 +218,7 @@ static enum orl_result write_coarse(struct writing *w, json_t **file)
     size_t cells = w->order.cells * sizeof *w->words;
     size_t size = sizeof header + cells + w->coarse_size;
     uint8_t *data = orl_array(w->site->log, size, 1);
-    if (!data)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(data);
     memcpy(data, header, sizeof header);
     memcpy(data + sizeof header, w->words, cells);
     memcpy(data + sizeof header + cells, w->coarse_data, w->coarse_size);

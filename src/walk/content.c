@@ -45,9 +45,7 @@ static enum orl_result make_texts(struct content *content)
 {
     const struct orl_log *log = content->log;
     size_t start;
-    enum orl_result result = orl_walk_start(log, content->scene, &start);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_walk_start(log, content->scene, &start));
     char *title = orl_walk_title(log, content->scene, content->title, content->settings);
     char *index = title ? orl_walk_index(log, title, "") : NULL;
     json_t *root = orl_walk_manifest(content->scene, content->settings, title ? title : "", start);
@@ -176,8 +174,7 @@ static enum orl_result copy_text(const struct content *content, const char *type
                                  struct content_file *file)
 {
     char *copy = orl_strdup(content->log, text);
-    if (!copy)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(copy);
     *file = text_file(type, copy);
     file->owned = (uint8_t *)copy;
     return ORL_OK;

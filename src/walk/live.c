@@ -229,8 +229,7 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
 {
     struct live *live = orl_array(log, 1, sizeof *live);
     *out = live;
-    if (!live)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(live);
     *live = (struct live){.log = log, .scene = scene, .ready = -1, .taken = -1};
     pthread_mutex_init(&live->lock, NULL);
     live->cameras = orl_array(log, scene->photo_count, sizeof *live->cameras);

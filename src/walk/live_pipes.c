@@ -123,8 +123,7 @@ enum orl_result orl_live_pipes_start(const struct orl_log *log, const char *cons
 {
     struct orl_live_pipes *pipes = orl_array(log, 1, sizeof *pipes);
     *pipes_out = pipes;
-    if (!pipes)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(pipes);
     pipes->log = log;
     pipes->start_s = orl_time_s();
     pipes->pipes = orl_array(log, count, sizeof *pipes->pipes);

@@ -165,9 +165,7 @@ static enum orl_result draw_depth(struct site *site, const struct orl_view *view
     }
     params.leave_out = ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE | ORL_LAYER_CONFIDENCE;
     struct orl_frame frame;
-    enum orl_result result = orl_renderer_draw(site->renderer, view, &params, NULL, &frame);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_renderer_draw(site->renderer, view, &params, NULL, &frame));
     *depth = frame.depth;
     frame.depth = (struct orl_image){0};
     orl_frame_finish(&frame);
@@ -290,10 +288,8 @@ enum orl_result orl_site_poster(struct site *site)
     (void)orl_walk_settings_start(site->settings, &view.camera, &view);
     view.camera = orl_camera_reframed(&view.camera, POSTER_WIDTH, POSTER_HEIGHT);
     const struct orl_render_params *render = site->carves ? &site->subject : &site->render;
-    enum orl_result result = orl_renderer_draw(site->renderer, &view, render, NULL, &frame);
-    if (result != ORL_OK)
-        return result;
-    result = orl_tone_srgb(site->log, &frame.color, &srgb);
+    ORL_TRY(orl_renderer_draw(site->renderer, &view, render, NULL, &frame));
+    enum orl_result result = orl_tone_srgb(site->log, &frame.color, &srgb);
     ORL_THEN(result, write_smaller(site, &srgb, POSTER_WIDTH, POSTER_HEIGHT, POSTER_QUALITY, "poster.jpg"));
     orl_image_finish(&srgb);
     orl_frame_finish(&frame);
