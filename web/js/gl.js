@@ -72,6 +72,23 @@ export class Device {
         return new Program(gl, program, `${vertex} ${fragment}`, shaders);
     }
 
+    // A buffer of so many bytes and how shaders read its records, as normalized numbers.
+    // rows: [count, type, offset] of each attribute; divisor: instances that share a record, 0: one vertex has it
+    vertices(bytes, usage, stride, rows, divisor = 0)
+    {
+        const gl = this.gl, vertices = gl.createVertexArray(), buffer = gl.createBuffer();
+        gl.bindVertexArray(vertices);
+        gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+        gl.bufferData(gl.ARRAY_BUFFER, bytes, usage);
+        rows.forEach(([count, type, at], i) => {
+            gl.enableVertexAttribArray(i);
+            gl.vertexAttribPointer(i, count, type, true, stride, at);
+            gl.vertexAttribDivisor(i, divisor);
+        });
+        gl.bindVertexArray(null);
+        return {vertices, buffer};
+    }
+
     texture(format, width, height, {levels = 1, layers = 0} = {})
     {
         const gl = this.gl, kind = layers ? gl.TEXTURE_2D_ARRAY : gl.TEXTURE_2D;

@@ -1,7 +1,7 @@
 // The picture as a server draws it: one request for a frame at a time over a WebSocket.
-import {add, rotateBack, scale} from "./math.js";
 import {text} from "./strings.js";
-import {isBehind, project} from "./view.js";
+import {make} from "./ui.js";
+import {isBehind, project, unproject} from "./view.js";
 
 const HEADER_WORDS = 6;
 const LAYERS = ["color", "depth", "normal", "coverage", "points"];
@@ -23,11 +23,8 @@ export class LivePicture {
 
     constructor(canvas, photos, onChange)
     {
-        this.canvas = canvas;
+        Object.assign(this, {canvas, onChange, all: photos, layers: LAYERS});
         this.context = canvas.getContext("2d", {alpha: false});
-        this.all = photos;
-        this.onChange = onChange;
-        this.layers = LAYERS;
         this.remote = true;    // frames come later than they are asked for
         this.pixelsMost = PIXELS_MAX;
         this.number = 0;       // of the last request
@@ -197,7 +194,7 @@ export class LivePicture {
     async capture(camera, layer)
     {
         const {image} = await this.own(camera, layer, {});
-        const canvas = Object.assign(document.createElement("canvas"), {width: image.width, height: image.height});
+        const canvas = make("canvas", {width: image.width, height: image.height});
         canvas.getContext("2d").drawImage(image, 0, 0);
         return canvas;
     }
@@ -216,8 +213,7 @@ export class LivePicture {
         const at = [Math.floor(x), Math.floor(y)];
         const {image, depths: [picked]} = await this.own(camera, 0, {picks: [at]});
         image.close();
-        const ray = [(at[0] + 0.5 - camera.cx) / camera.fx, (at[1] + 0.5 - camera.cy) / camera.fy, 1];
-        return picked > 0 ? add(camera.eye, rotateBack(camera.r, scale(ray, picked))) : null;
+        return picked > 0 ? unproject(camera, at[0] + 0.5, at[1] + 0.5, picked) : null;
     }
 
     // --- what is no frame ---

@@ -6,6 +6,7 @@ import {rankPhotos} from "./photos.js";
 import {Cloud} from "./points.js";
 import {LAYERS, Renderer, TONES} from "./renderer.js";
 import {text} from "./strings.js";
+import {make} from "./ui.js";
 import {isBehind, project} from "./view.js";
 
 const RANK_EVERY = 250; // milliseconds, while moving
@@ -53,21 +54,15 @@ export class LocalPicture {
     // first: what decode() gives of the photograph of the start
     constructor(canvas, device, files, manifest, photos, onChange, sources, coarse, first)
     {
-        this.canvas = canvas;
-        this.files = files;
-        this.manifest = manifest;
-        this.all = photos;
-        this.onChange = onChange;
-        this.layers = LAYERS;
+        Object.assign(this, {canvas, device, files, manifest, onChange, first, all: photos, layers: LAYERS});
         this.tones = manifest.radiance ? TONES : [];
         this.problem = "";     // why no frames come
         this.remote = false;   // a frame is there once draw() returns
         // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
         this.pixelsMost = handheld ? 1.0e6 : 2.6e6;
-        this.device = device;
-        this.cloud = new Cloud(this.device, coarse);
-        this.renderer = new Renderer(this.device, sources, manifest, photos, this.cloud, photoBudget());
-        this.moving = manifest.steps ? new Moving(this.device, files, manifest, photos, onChange) : null;
+        this.cloud = new Cloud(device, coarse);
+        this.renderer = new Renderer(device, sources, manifest, photos, this.cloud, photoBudget());
+        this.moving = manifest.steps ? new Moving(device, files, manifest, photos, onChange) : null;
         this.timeSteps = null; // of the page
         this.allBytes = totalBytes(manifest) + (this.moving ? this.moving.bytes : 0);
         this.lookedAt = 0;
@@ -80,7 +75,6 @@ export class LocalPicture {
             throw new Error(text.lostDevice);
         });
         canvas.addEventListener("webglcontextrestored", () => location.reload());
-        this.first = first;
         for (const photo of this.moving ? [] : photos)
             this.request(photo);
         manifest.points.files.forEach((file, number) =>
@@ -237,7 +231,7 @@ export class LocalPicture {
     async capture(camera, layer)
     {
         const image = this.renderer.capture(camera, layer);
-        const canvas = Object.assign(document.createElement("canvas"), {width: image.width, height: image.height});
+        const canvas = make("canvas", {width: image.width, height: image.height});
         canvas.getContext("2d").putImageData(image, 0, 0);
         return canvas;
     }

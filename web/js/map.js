@@ -1,7 +1,7 @@
 // The scene from above: points, the photographs' places and directions in the order they were
 // taken, and the viewer.
 import {add, cross, dot, normalize, rotateBack, scale, sub} from "./math.js";
-import {byId} from "./ui.js";
+import {byId, make} from "./ui.js";
 import {text} from "./strings.js";
 
 const MARGIN = 0.06;       // of the map's side
@@ -15,13 +15,11 @@ export class Map2d {
         this.canvas = byId("map");
         this.canvas.setAttribute("aria-label", text.map);
         this.canvas.title = text.map;
-        this.navigator = navigator;
-        this.goTo = goTo;
+        Object.assign(this, {navigator, picture, goTo});
         const up = navigator.up, forward = navigator.home.r.slice(6);
         // The start looks upwards on the map.
         this.north = normalize(sub(forward, scale(up, dot(forward, up))));
         this.east = cross(this.north, up);
-        this.picture = picture;
         this.points = null; // laid out when the map is first shown
         this.canvas.addEventListener("click", event => this.click(event));
     }
@@ -56,7 +54,7 @@ export class Map2d {
 
     drawBackground(size)
     {
-        const canvas = Object.assign(document.createElement("canvas"), {width: size, height: size});
+        const canvas = make("canvas", {width: size, height: size});
         const context = canvas.getContext("2d"), image = context.createImageData(size, size);
         for (const [x, y, , color] of this.points) {
             const px = Math.floor((x - this.left) / this.side * size);

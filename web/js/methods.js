@@ -7,8 +7,7 @@ export class MethodPanel {
     // methods: manifest.methods; choose(name, settings): asks the server, which answers by told()
     constructor(methods, choose)
     {
-        this.methods = methods;
-        this.choose = choose;
+        Object.assign(this, {methods, choose});
         this.options = new Map(methods.options.map(option => [option.key, option]));
         this.settings = {};  // that this client has changed, as the server has accepted them
         this.asked = null;   // {name, settings} that the server has not answered

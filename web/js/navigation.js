@@ -28,12 +28,8 @@ export class Navigator {
     // calm: no flights, no gliding; pivotAt: () => the point in the middle of the picture, or null
     constructor(manifest, photos, {calm, pivotAt})
     {
-        this.photos = photos;
-        this.up = normalize(manifest.up);
-        this.ground = manifest.ground;
-        this.distance = manifest.distance;
-        this.calm = calm;
-        this.pivotAt = pivotAt;
+        const {ground, distance: typical} = manifest;
+        Object.assign(this, {photos, ground, calm, pivotAt, distance: typical, up: normalize(manifest.up)});
         const first = photoView(photos[manifest.start]), settings = manifest.walk || {};
         const start = settings.start ? viewFromSaved(settings.start, first) : null;
         this.home = start || first;

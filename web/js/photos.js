@@ -1,5 +1,6 @@
 // Photographs: which of them a view can use best, and those that are on the graphics chip.
 import {clamp, distance, dot, rotate, rotateBack, scale, sub} from "./math.js";
+import {unproject} from "./view.js";
 
 export function makePhotos(manifest)
 {
@@ -20,10 +21,8 @@ function samplePoints(camera, typical)
     for (const depth of DEPTHS)
         for (let i = 0; i < ACROSS * ACROSS; i++) {
             const u = (i % ACROSS + 0.5) * camera.width / ACROSS;
-            const v = (Math.floor(i / ACROSS) + 0.5) * camera.height / ACROSS, z = depth * typical;
-            const q = [(u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z];
-            const p = rotateBack(camera.r, q);
-            points.push([p[0] + camera.eye[0], p[1] + camera.eye[1], p[2] + camera.eye[2]]);
+            const v = (Math.floor(i / ACROSS) + 0.5) * camera.height / ACROSS;
+            points.push(unproject(camera, u, v, depth * typical));
         }
     return points;
 }
@@ -93,14 +92,11 @@ export class PhotoStore {
     constructor(device, programs, photos, budgetBytes, radiance)
     {
         const gl = device.gl, largest = key => Math.max(...photos.map(p => key(p)));
-        this.device = device;
-        this.programs = programs;
-        this.photos = photos;
+        Object.assign(this, {device, programs, photos, radiance});
         this.width = largest(p => p.width);
         this.height = largest(p => p.height);
         this.levels = 1 + Math.floor(Math.log2(Math.max(this.width, this.height)));
         const depthWidth = largest(p => p.depth.width), depthHeight = largest(p => p.depth.height);
-        this.radiance = radiance;
         this.format = radiance ? "RGBA16F" : "SRGB8_ALPHA8";
         const each = this.width * this.height * (radiance ? 8 : 4) * 4 / 3 + depthWidth * depthHeight * 2;
         const layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);

@@ -24,21 +24,10 @@ function readCells(data)
 export class Cloud {
     constructor(device, data)
     {
-        const gl = device.gl, read = readCells(data);
-        this.gl = gl;
-        Object.assign(this, read);
+        const {gl} = device, read = readCells(data);
         this.bytes = read.points * read.stride;
-        this.buffer = gl.createBuffer();
-        this.vertices = gl.createVertexArray();
-        gl.bindVertexArray(this.vertices);
-        gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-        gl.bufferData(gl.ARRAY_BUFFER, this.bytes, gl.STATIC_DRAW);
         const rows = [[3, gl.UNSIGNED_SHORT, 0], [2, gl.BYTE, 6], [4, gl.UNSIGNED_BYTE, 8]];
-        rows.forEach(([count, type, at], i) => {
-            gl.enableVertexAttribArray(i);
-            gl.vertexAttribPointer(i, count, type, true, this.stride, at);
-        });
-        gl.bindVertexArray(null);
+        Object.assign(this, read, {gl}, device.vertices(this.bytes, gl.STATIC_DRAW, read.stride, rows));
         this.coarseData = new Uint8Array(data, this.coarseAt);
         let at = 0;
         for (const cell of this.cells) {

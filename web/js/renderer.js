@@ -1,8 +1,9 @@
 // A frame: depth from points, then colour from photographs. What each pass does is said in its
 // shader; the same passes, by compute shaders, make Oriel's own frames (src/render).
-import {add, distance, dot, rotate, scale, sub} from "./math.js";
+import {distance, dot, rotate, scale, sub} from "./math.js";
 import {PhotoStore} from "./photos.js";
 import {coarseLevel, Soft} from "./soft.js";
+import {unproject} from "./view.js";
 
 const TILE = 16;           // pixels that share a list of photographs
 const OWN_PLACE = 0.1;     // of the scene's distance, around a photograph's place
@@ -60,11 +61,7 @@ class Frame {
     // cells: of guesses, as cellSide has it
     constructor(device, width, height, planes, cells)
     {
-        this.device = device;
-        this.width = width;
-        this.height = height;
-        this.targets = [];
-        this.mipmapped = [];
+        Object.assign(this, {device, width, height, targets: [], mipmapped: []});
         const make = (...args) => {
             const target = device.target(...args);
             this.targets.push(target);
@@ -143,14 +140,12 @@ class Frame {
 export class Renderer {
     constructor(device, sources, manifest, photos, cloud, photoBytes)
     {
-        this.device = device;
-        this.manifest = manifest;
+        Object.assign(this, {device, manifest});
         this.clouds = [cloud]; // and what moves, where something does
         this.planes = manifest.radiance ? 0 : Math.round(manifest.options.guess_depths);
         this.shared = constants(sources);
         this.programs = makePrograms(device, sources, manifest, this.planes);
-        this.photos = new PhotoStore(device, this.programs, photos, photoBytes,
-                                     manifest.radiance);
+        this.photos = new PhotoStore(device, this.programs, photos, photoBytes, manifest.radiance);
         this.soft = null; // splats, once they are loaded
         this.frame = null;
         this.exposure = 1; // factor on light
@@ -404,10 +399,7 @@ export class Renderer {
     // What that pixel shows, in the world, no deeper than `most`; null: nothing.
     pointAt(x, y, most = Infinity)
     {
-        const z = Math.min(this.depthAt(x, y), most), c = this.camera;
-        if (!(z > 0))
-            return null;
-        const q = [(x - c.cx) / c.fx * z, (y - c.cy) / c.fy * z, z];
-        return add(c.eye, [0, 1, 2].map(k => c.r[k] * q[0] + c.r[3 + k] * q[1] + c.r[6 + k] * q[2]));
+        const depth = Math.min(this.depthAt(x, y), most);
+        return depth > 0 ? unproject(this.camera, x, y, depth) : null;
     }
 }

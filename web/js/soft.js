@@ -18,25 +18,14 @@ export class Soft {
     // pixelRange: of the manifest
     constructor(device, data, pixelRange)
     {
-        const gl = device.gl;
-        Object.assign(this, {device, pixelRange});
+        const {gl} = device;
         this.words = new Uint32Array(data);
         this.numbers = new Float32Array(data);
         this.count = this.words.length / WORDS;
         this.sorted = new Uint32Array(this.words.length);
-        this.vertices = gl.createVertexArray();
-        this.buffer = gl.createBuffer();
-        gl.bindVertexArray(this.vertices);
-        gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-        gl.bufferData(gl.ARRAY_BUFFER, data.byteLength, gl.DYNAMIC_DRAW);
         const rows = [[3, gl.FLOAT, 0], [3, gl.UNSIGNED_SHORT, 12], [2, gl.UNSIGNED_BYTE, 18], [4, gl.BYTE, 20],
                       [3, gl.BYTE, 24]];
-        rows.forEach(([count, type, at], i) => {
-            gl.enableVertexAttribArray(i);
-            gl.vertexAttribPointer(i, count, type, true, BYTES, at);
-            gl.vertexAttribDivisor(i, 1);
-        });
-        gl.bindVertexArray(null);
+        Object.assign(this, {device, pixelRange}, device.vertices(data.byteLength, gl.DYNAMIC_DRAW, BYTES, rows, 1));
     }
 
     // Puts those before the camera into the buffer, the farthest first. Returns how many they are.

@@ -59,7 +59,7 @@ const english = {
         add: "Add this view (R)", seconds: "Duration, seconds", scrub: "Place on the path",
         play: "Play", pause: "Pause", load: "Open a saved path", saveOriel: "Save for oriel render", saveNerfstudio: "Save for nerfstudio",
         format: "Format", render: "Render", rendering: "Progress of rendering",
-        forVisitors: "Make it the visitors' tour", noTour: "Visitors have no tour of it.",
+        forVisitors: "Make it the visitors' tour",
         rendered: (done, total) => `${done} of ${total} frames`, written: file => `Written to ${file}`,
         failed: problem => `Not rendered: ${problem}`,
         loaded: (file, n) => `${file}: ${count(n, "view", "views")}`,

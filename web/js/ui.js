@@ -173,8 +173,7 @@ export class Thumbs {
                                            label: text.thumb(photo.number + 1, photo.name)}, image);
             return {button, image, file: photo.thumb.file};
         });
-        this.files = files;
-        this.current = null;
+        Object.assign(this, {files, current: null});
         this.element.append(...this.buttons.map(b => b.button));
     }
 
@@ -209,16 +208,13 @@ export class Compare {
     // radiance: as PhotoStore takes it
     constructor(files, radiance)
     {
-        this.files = files;
-        this.radiance = radiance;
+        Object.assign(this, {files, radiance, on: false, photo: null});
         this.element = byId("compare");
         this.image = this.element.querySelector("img");
         this.slider = this.element.querySelector("input");
         this.slider.setAttribute("aria-label", text.compareSlider);
         byId("left-side").textContent = text.sides.own;
         this.slider.addEventListener("input", () => this.split());
-        this.on = false;
-        this.photo = null;
         if (radiance) {
             this.image.style.filter = "url(#shown)";
             this.setExposure(0);

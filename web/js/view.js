@@ -1,8 +1,8 @@
 // Views: where the viewer is, where they look, and what part of it the window frames.
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
-import {dot, length, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale, slerp,
-        sub} from "./math.js";
+import {add, dot, length, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale,
+        slerp, sub} from "./math.js";
 
 // Quarters, clockwise, that turn a picture of each EXIF orientation upright (orl_photo_upright).
 const QUARTERS = [0, 0, 0, 2, 2, 1, 1, 3, 3];
@@ -64,6 +64,12 @@ export function project(camera, point)
     const [x, y, z] = rotate(camera.r, sub(point, camera.eye));
     const at = [camera.fx * x / z + camera.cx, camera.fy * y / z + camera.cy, z];
     return z > 0 && at[0] > 0 && at[1] > 0 && at[0] < camera.width && at[1] < camera.height ? at : null;
+}
+
+// The point at that depth under a place of a camera's picture, pixels.
+export function unproject({r, eye, fx, fy, cx, cy}, x, y, depth)
+{
+    return add(eye, rotateBack(r, [(x - cx) / fx * depth, (y - cy) / fy * depth, depth]));
 }
 
 const BEHIND = 1.04; // depths that differ by less may be of one surface
