@@ -8,7 +8,6 @@
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/vec3.h"
-#include "datasets/figures_internal.h"
 #include "scene/isosurface.h"
 
 static const double pi = 3.14159265358979323846;

@@ -56,6 +56,11 @@ double orl_figure_distance(const struct orl_figure *figure, const double at[3], 
 enum orl_result orl_figure_mesh(const struct orl_log *log, const struct orl_figure *figure,
                                 double spacing, struct orl_mesh *mesh) ORL_CHECK_RESULT;
 
+// From the part's segment to a point, the shortest way.
+void orl_figure_part_offset(const struct orl_figure_part *part, const double at[3], double off[3]);
+// What the part reflects at a point of its surface, linear.
+void orl_figure_part_color(const struct orl_figure_part *part, const double at[3], double color[3]);
+
 struct orl_figures_picture {
     struct orl_image photo; // U8 x3, sRGB: mean of 4 x 4 rays a pixel
     struct orl_image mask;  // U8 x1: 255 where the ray through the pixel's centre meets the figure

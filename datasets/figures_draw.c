@@ -4,7 +4,7 @@
 
 #include "core/color.h"
 #include "core/vec3.h"
-#include "datasets/figures_internal.h"
+#include "datasets/figures.h"
 
 static const double LIGHT[3] = {1.1, 2.8, 0.7}; // a small lamp below the ceiling
 static const double LAMP = 11.0, AMBIENT = 0.40; // W m^2 and share: white at 2 m is about 1
