@@ -50,21 +50,18 @@ enum orl_result orl_synth_check(const struct orl_log *log, const struct orl_synt
         if (!(fabs(p->exposures_ev[i]) <= 12))
             return orl_fail(log, ORL_ERR_ARGUMENT, "exposure %g EV: must be from -12 to 12",
                             p->exposures_ev[i]);
-    if (!(p->contrast_ev >= 0 && p->contrast_ev <= 16))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "contrast %g EV: must be from 0 to 16",
-                        p->contrast_ev);
-    if (!(p->noise >= 0 && p->noise <= 0.5))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "noise %g: must be from 0 to 0.5", p->noise);
-    if (!(p->vignette >= 0 && p->vignette <= 0.9))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "vignette %g: must be from 0 to 0.9", p->vignette);
-    if (!(p->drift_ev >= 0 && p->drift_ev <= 2))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "drift %g: must be from 0 to 2", p->drift_ev);
-    if (!(p->gloss >= 0 && p->gloss <= 1))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "gloss %g: must be from 0 to 1", p->gloss);
-    if (!(p->bars_m >= 0 && p->bars_m <= 1.5))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "bars of %g m: must be from 0 to 1.5", p->bars_m);
-    if (!(p->plain >= 0 && p->plain <= 1))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "plain %g: must be from 0 to 1", p->plain);
+    const struct {
+        double value, most;
+        const char *what, *unit;
+    } ranges[] = {
+        {p->contrast_ev, 16, "contrast", " EV"}, {p->noise, 0.5, "noise", ""}, {p->vignette, 0.9, "vignette", ""},
+        {p->drift_ev, 2, "drift", ""}, {p->gloss, 1, "gloss", ""}, {p->bars_m, 1.5, "bars of", " m"},
+        {p->plain, 1, "plain", ""},
+    };
+    for (size_t i = 0; i < ORL_COUNT(ranges); i++)
+        if (!(ranges[i].value >= 0 && ranges[i].value <= ranges[i].most))
+            return orl_fail(log, ORL_ERR_ARGUMENT, "%s %g%s: must be from 0 to %g", ranges[i].what, ranges[i].value,
+                            ranges[i].unit, ranges[i].most);
     return ORL_OK;
 }
 
