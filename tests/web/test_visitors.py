@@ -305,6 +305,7 @@ class Page(Visitors):
         self.browser.wait("return document.getElementById('tool-headset') !== null")
         self.js("oriel.manifest.walk.unit_m = oriel.headset.units = 0.5; document.getElementById('tool-headset').click()")
         self.browser.wait("return window.headset.frame !== undefined")
+        self.assertTrue(self.js("return oriel.headset.on"))
         start = self.eye()
         eyes = self.js(WEAR, 0)
         self.assertEqual(self.js("return oriel.navigator.view.eye"), start)
@@ -327,6 +328,7 @@ class Page(Visitors):
         ((turned, _), (other, _)) = self.js(WEAR, 600, {"right": [0, 0, 1, 0]})
         self.assertAlmostEqual(sum(a * b for a, b in zip(turned["r"][6:], camera["r"][:3])), math.sin(math.pi / 6), places=5)
         self.js("headset.dispatchEvent(new Event('end'))")
+        self.assertFalse(self.js("return oriel.headset.on"))
         self.browser.settle()
         for own, left, right in zip(self.eye(), turned["eye"], other["eye"]):
             self.assertAlmostEqual(own, (left + right) / 2, places=5)

@@ -57,6 +57,8 @@ export class Headset {
         session.requestAnimationFrame((time, frame) => this.tick(time, frame));
     }
 
+    get on() { return this.session !== null; }
+
     leave() { this.session.end(); }
 
     // Place and rotation in the scene.
