@@ -4,6 +4,7 @@
 #include "gather/hidden.glsl"
 #include "gather/blend.glsl"
 #include "gather/sample/srgb.glsl"
+#include "shared/constants.h"
 #include "shared/pixel.glsl"
 #include <visibility>
 
@@ -12,7 +13,7 @@
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
 layout(rgba16f, binding = 1) writeonly uniform image2D painted; // finished, as in shared/pixel.glsl
-layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sums over 2x2, as fill_seed.comp
+layout(rgba32f, binding = 2) writeonly uniform image2D seeds; // sums over 2x2
 layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // the same, of estimated depth
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
@@ -85,7 +86,7 @@ void main()
             look(rankings[k], n, spots[k], from);
         colors[k] = blend(spots[k], rankings[k], from, lumas[k], own);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
-        seed += colors[k];
+        seed += colors[k] * (is_guess(spots[k]) ? 1.0 : ORL_SURFACE_SEED);
         guess += guessed;
         blur = guessed.a > 0.0 ? max(blur, own) : blur;
     }

@@ -9,6 +9,9 @@
 #define ORL_GROUND_REACH 20.0
 // The farthest estimate of background depth, as a multiple of a typical depth of the scene.
 #define ORL_GUESS_FARTHEST 1000.0
+// How much a painted surface counts beside painted background in the colours of what no photograph shows: that is
+// background nearly always, not a part of the surface before it.
+#define ORL_SURFACE_SEED 0.1
 // Cells in which estimated depths are tried, along the longer side of the picture, at least.
 #define ORL_GUESS_CELLS 48
 // The coarse part of what soft splats correct is a mean over a photograph's longer side divided by this: colours

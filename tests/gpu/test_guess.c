@@ -284,6 +284,36 @@ static void guesses_move_behind_what_photographs_see_past(void **state)
     assert_true(seen[1][2] > 0.9f && seen[1][0] < 0.1f);
 }
 
+// A green plate at the lower left before blue, in a photograph of the lower half of the view. What is above is not in
+// any photograph, and is background nearly always: the share of blue there, at the centre of the left.
+static void what_no_photograph_shows_is_background(void **state)
+{
+    (void)state;
+    enum { POINTS = 64, HALF = SIDE / 2 };
+    struct fixture f;
+    setup_empty(&f, WALL_Z);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, POINTS * POINTS), ORL_OK);
+    set_square(&f.scene.points, 0, POINTS, 2, -1, (float)WALL_Z, green);
+    for (size_t i = 0; i < POINTS * POINTS; i++)
+        f.scene.points.position[i][1] += 1;
+    struct orl_view lower = look_from(0, 0, 0, SIDE, FOCAL);
+    lower.camera.cy = 0;
+    add_photo(&f, lower, blue);
+    struct orl_image image;
+    assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        memcpy(&image.u8[3 * i], i % SIDE < HALF && i / SIDE < HALF ? green : blue, 3);
+    repaint_photo(&f, &image);
+    const struct orl_render_params params = with_depths(0);
+    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+    const float *seen = color_at(&frame, SIDE / 4, SIDE / 4);
+    double share = (double)(seen[2] / (seen[1] + seen[2]));
+    orl_frame_finish(&frame);
+    teardown(&f);
+    print_message("blue: %.2f\n", share);
+    assert_true(share > 0.7);
+}
+
 int main(void)
 {
     gpu = gpu_test_device();
@@ -296,6 +326,7 @@ int main(void)
         cmocka_unit_test(guesses_change_without_a_line),
         cmocka_unit_test(guesses_continue_slanting_surfaces),
         cmocka_unit_test(guesses_move_behind_what_photographs_see_past),
+        cmocka_unit_test(what_no_photograph_shows_is_background),
     };
     int failed = cmocka_run_group_tests_name("guess", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

@@ -1,5 +1,6 @@
 // At half the picture's size: colour to fill holes with, and colour on guessed depth to blur it.
 #include "colors.glsl"
+#include "shared/constants.h"
 layout(location = 0) out vec4 seeded;
 layout(location = 1) out vec4 guesses;
 
@@ -15,7 +16,8 @@ void main()
         vec4 own = own_color(from);
         bool unpainted = !pixel_is_finished(own) && pixel_blur(own) == 0.0;
         vec4 color = unpainted ? vec4(0.0) : vec4(own.rgb, 1.0);
-        seeded += color;
-        guesses += own.a > 0.5 ? vec4(0.0) : color * 0.25; // half floats
+        bool surface = own.a > 0.5;
+        seeded += color * (surface ? ORL_SURFACE_SEED : 1.0);
+        guesses += surface ? vec4(0.0) : color * 0.25; // half floats
     }
 }
