@@ -182,7 +182,8 @@ page_accuracy() {
 
 Held-out photographs, rendered from the others; means over the photographs of a scene. The
 [metrics](../reference/metrics.md) are over the whole picture, holes included, unless they say otherwise. The methods of
-papers have two columns: as the paper has them, and *on the proxy of oriel*, with its depth and background.
+papers have two columns: as the paper has them, and *on the proxy of oriel*, with its depth and background. `oriel` and
+`oriel-high` alone take the options that `prepare` [found on training photographs](../how/pipeline.md#what-suits-the-scene).
 END
     command_block "$all"
     printf '**PSNR in dB, whole pictures**\n\n'
@@ -214,7 +215,8 @@ mean over the scenes; the figure has the wall time, which other work on the mach
 both faster, by processor time, and better by PSNR. `sd` is the standard deviation over the scenes. A time is of few
 frames and scatters by up to 15 % beside other programs. *Completeness* takes every black pixel for a missing one. The two
 photographs of *temple* are themselves black in 12 and 35 % of their pixels, so that a method that draws what is behind
-the temple right has less than 1, and one that fills it with other colours has 1. [Columns](../reference/chart.md).
+the temple right has less than 1, and one that fills it with other colours has 1. `oriel` and `oriel-high` alone take the
+options that `prepare` [found on training photographs](../how/pipeline.md#what-suits-the-scene). [Columns](../reference/chart.md).
 END
     command_block "$chart"
     printf '![PSNR against the time of a frame, means over the scenes](charts.svg)\n\n'
