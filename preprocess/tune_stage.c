@@ -28,7 +28,6 @@ static int size_divide(const struct orl_scene *scene)
 
 static enum orl_result tune(struct orl_job *job, struct orl_gpu *gpu, struct orl_scene *scene, json_t *tuned)
 {
-    const struct orl_renderer_params limits = {.max_vram_bytes = job->params->max_vram_bytes};
     const struct orl_search_params params = {.size_divide = size_divide(scene), .views = VIEWS, .gain_db = GAIN_DB,
                                              .progress = job->progress};
     const struct orl_names keys = {.items = (char **)KEYS, .count = ORL_COUNT(KEYS)};
@@ -36,7 +35,7 @@ static enum orl_result tune(struct orl_job *job, struct orl_gpu *gpu, struct orl
     struct orl_search search = {0};
     struct orl_choice start;
     enum orl_result result = orl_choice_make(job->log, scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0}, &start);
-    ORL_THEN(result, orl_renderer_create(gpu, scene, &limits, &renderer));
+    ORL_THEN(result, orl_renderer_create(gpu, scene, NULL, &renderer));
     ORL_THEN(result, orl_search_backdrop(job->log, renderer, scene, &params, &start));
     ORL_THEN(result, orl_search_run(gpu, renderer, scene, &params, &start, &keys, &search));
     if (result == ORL_OK)
