@@ -96,7 +96,7 @@ if command -v colmap >/dev/null; then
     settled() { sed -n '/"settings"/,/"photographs"/p' | tr -d ' \n' | sed 's/.*"settings"/"settings"/'; }
     [ "$(sed -n '/"tuned"/,$p' closed/scene.json | settled)" = "$(settled <tuned.json)" ] ||
         fail "the stage tune found: $(sed -n '/"tuned"/,$p' closed/scene.json | settled)"
-    grep -q '"backdrop": "moves"' closed/scene.json || fail "nothing was found of the backdrop"
+    grep -Eq '"backdrop": "(moves|rests)"' closed/scene.json || fail "nothing was found of the backdrop"
     # The cameras are those that were given, in the truth's own coordinates: a copy without
     # points has the same.
     runs 0 "$oriel" import photos-truth/cameras.json --images photos --test-list 0003 --out bare
