@@ -99,6 +99,9 @@ static void prepare(struct said *said, bool resume)
     const char *const inputs[] = {photos};
     struct orl_log log = log_to(said);
     const struct orl_prepare_params params = {.inputs = inputs, .input_count = 1,
+                                              // Fewer than five are left to train, so that nothing is drawn: this
+                                              // test looks for leaks, which drivers have.
+                                              .test_every = 3,
                                               .out = scene_dir, .resume = resume};
     if (orl_prepare(&log, &params, NULL) != ORL_OK)
         fail_msg("%s", said->text);
