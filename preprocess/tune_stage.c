@@ -13,7 +13,7 @@ enum {
     SIDE = 256,    // their longer side, pixels, at most
 };
 static const double GAIN_DB = 0.1; // a change must bring so much
-// What is best differs from scene to scene for these alone; oriel tune moves others as well.
+// What is best differs most from scene to scene for these; oriel tune moves others as well.
 static char *const KEYS[] = {"sharpness", "depth_tolerance", "guess_depths"};
 
 static int size_divide(const struct orl_scene *scene)
