@@ -4,7 +4,6 @@
 #ifndef ORL_SCENE_COLMAP_H
 #define ORL_SCENE_COLMAP_H
 
-#include "scene/colmap.h"
 #include "oriel/image.h"
 #include "oriel/camera.h"
 
