@@ -55,6 +55,7 @@ class Build:
         self.compile = {os.path.realpath(os.path.join(c["directory"], c["file"])): c["command"]
                         for c in json.loads(found[found.index("["):]) if "-c " in c["command"]}
         self.sound, self.locks, self.lock = {}, {}, threading.Lock()
+        self.said = {}  # the last lines of each program
         self.pages = None  # a folder with a scene and its site, when a test needs it
 
     def object_of(self, path, text, work):
@@ -116,31 +117,40 @@ class Build:
         """None: it is skipped. Ends the program at its first failure."""
         environment = dict(os.environ, **({"ORIEL_TEST_SHADERS": shaders} if shaders else {}))
         limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT_S, CPU_LIMIT_S))
-        error = None
+        error, said = None, []
         with subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", env=environment, preexec_fn=limit,
                               cwd=os.path.join(self.folder, "tests")) as process:
             timer = threading.Timer(WAIT_S, process.kill)
             timer.start()
             for line in process.stdout:
+                said.append(line)
                 error = error or (line.strip() if shaders and "does not compile" in line else None)
                 if "[  FAILED  ]" in line or error:
                     process.kill()
             timer.cancel()
         if error:
             raise Broken(error)
+        self.said[program[0]] = "".join(said[-20:])
         return None if process.returncode == 77 else process.returncode == 0
 
     def own_program(self, test):
         return os.path.join(self.folder, "tests", test.replace("/", "_"))
 
+    def own_passes(self, test):
+        return (self.page_passes(test, os.path.join(self.page_folder(), "served/path/site"))
+                if test.startswith(PAGE) else self.passes(self.own_program(test)))
+
     def check_sound(self, test):
+        """A test that fails without a change, which is said, is tried once more: its verdicts would be lost."""
         with self.lock:
             own = self.locks.setdefault(test, threading.Lock())
         with own:
             if test not in self.sound:
-                self.sound[test] = (self.page_passes(test, os.path.join(self.page_folder(), "served/path/site"))
-                                    if test.startswith(PAGE) else self.passes(self.own_program(test)))
+                self.sound[test] = self.own_passes(test)
+                if self.sound[test] is False:
+                    print("%s failed without a change:\n%s" % (test, self.said.get(self.own_program(test), "")), flush=True)
+                    self.sound[test] = self.own_passes(test)
             if self.sound[test] is False:
                 raise Broken(test + " fails without a change")
 
