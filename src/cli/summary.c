@@ -43,7 +43,8 @@ static void print_stages(const json_t *stages)
         cpu += number(record, "cpu_s");
         peak = fmax(peak, stage_peak);
     }
-    printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  at most\n", "all", wall, cpu, peak);
+    if (json_object_size(stages) > 0)
+        printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  at most\n", "all", wall, cpu, peak);
 }
 
 enum { LEFT_OUT_SHOWN = 20 };
