@@ -59,14 +59,16 @@ static enum orl_result read_begun(const struct planner *p, json_t **begun)
     return orl_path_is_file(path) ? orl_json_read(p->log, path, begun) : ORL_OK;
 }
 
-// Takes out options that earlier programs had, each with its value.
+// Takes out options and values that earlier programs had.
 static json_t *without_gone_options(const json_t *arguments)
 {
     json_t *left = json_array();
     for (size_t i = 0; i < json_array_size(arguments); i++) {
         json_t *text = json_array_get(arguments, i);
         const char *word = json_is_string(text) ? json_string_value(text) : "";
-        if (strcmp(word, "--adapt") == 0 || strcmp(word, "--adapt-budget") == 0)
+        const char *value = json_string_value(json_array_get(arguments, i + 1));
+        if (strcmp(word, "--adapt-budget") == 0 ||
+            (strcmp(word, "--adapt") == 0 && value && strcmp(value, "none") != 0))
             i++;
         else
             json_array_append(left, text);

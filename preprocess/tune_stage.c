@@ -55,7 +55,8 @@ enum orl_result orl_stage_tune(struct orl_job *job, json_t *record)
     struct orl_drawing drawing = {0};
     json_t *tuned = json_object();
     enum orl_result result = tuned ? orl_scene_json_open(job, &scene) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && scene->photo_count - orl_heldout_count(scene) >= VIEWS_MIN)
+    if (result == ORL_OK && job->params->adapt == ORL_ADAPT_AUTO &&
+        scene->photo_count - orl_heldout_count(scene) >= VIEWS_MIN)
         orl_drawing_begin(job, scene, "tune: settings stay those of the method", &drawing);
     if (drawing.gpu)
         result = tune(job, drawing.gpu, scene, tuned);

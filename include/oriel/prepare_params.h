@@ -66,6 +66,10 @@ enum orl_hull_use { ORL_HULL_USES(ORL_ENUMERATOR) };
     NAME(ORL_OCCLUDER_SEARCH_NONE, "none") NAME(ORL_OCCLUDER_SEARCH_FIND, "find")
 enum orl_occluder_search { ORL_OCCLUDER_SEARCHES(ORL_ENUMERATOR) };
 
+// Whether the options of rendering are found on the scene's own photographs.
+#define ORL_ADAPTS(NAME) NAME(ORL_ADAPT_NONE, "none") NAME(ORL_ADAPT_AUTO, "auto")
+enum orl_adapt { ORL_ADAPTS(ORL_ENUMERATOR) };
+
 // How the response curve of a camera is found from points that were seen at several exposures.
 // polynomial: Oriel's own. debevec, robertson: OpenCV's, to compare with.
 #define ORL_RESPONSE_METHODS(NAME) \
@@ -140,6 +144,9 @@ extern const char *const orl_quality_names[], *const orl_matching_names[],
         "splats are X times as large; default 1") \
     ROW(mesh, "mesh", CHOICE(orl_prepare_mesh, ORL_PREPARE_MESHES, ORL_MESH_NONE, "HOW"), \
         "also make mesh.ply, for methods that draw a mesh", "mesh=mesh") \
+    ROW(adapt, "adapt", CHOICE(orl_adapt, ORL_ADAPTS, ORL_ADAPT_AUTO, "HOW"), \
+        "find the options of rendering that suit the scene by rendering training photographs", \
+        "tune?adapt") \
     ROW(occluders, "occluders", \
         CHOICE(orl_occluder_search, ORL_OCCLUDER_SEARCHES, ORL_OCCLUDER_SEARCH_FIND, "HOW"), \
         "find what single photographs show before the scene, so that it is not painted onto what " \

@@ -39,7 +39,7 @@ struct orl_import_params {
     enum orl_import_points points;
     const char *points_file;   // a PLY cloud
     struct orl_prepare_params densify; // of ORL_IMPORT_DENSIFY: only quality, densifier, seed,
-                                       // keep, hull, gpu, max_vram_bytes and shader_dir are used
+                                       // keep, hull, adapt, gpu, max_vram_bytes and shader_dir are used
     struct orl_room room;      // the room that the subject is in; not known: as the cameras' file
     const char *mesh;          // a PLY or OBJ mesh; NULL: none
     int hull_side;             // > 0: the mesh is the silhouettes' visual hull on hull_side^3
@@ -48,6 +48,6 @@ struct orl_import_params {
 };
 #define ORL_IMPORT_DEFAULTS .pixel_centre = -1, .dark_threshold = -1, .frames = {0, 0, 1}, \
                             .densify = {.quality = ORL_QUALITY_STANDARD, .seed = 1, \
-                                        .hull = ORL_HULL_CLOSE}
+                                        .hull = ORL_HULL_CLOSE, .adapt = ORL_ADAPT_AUTO}
 
 #endif

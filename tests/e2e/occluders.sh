@@ -22,6 +22,7 @@ grep -q "0005.jpg .*occluders" "$work/out" || fail "info does not name the photo
 [ "$(grep -c '"occluded": 0\.' "$work/s/scene.json")" = 1 ] || fail "scene.json tells of other photographs"
 mask=$work/s/occluders/0005.jpg.png
 [ -s "$mask" ] || fail "there is no mask"
+grep -q '"tuned"' "$work/s/scene.json" || fail "nothing was found on the training photographs"
 
 # A published scene has it in the depth map of that photograph, the fourth for training, and in no
 # other.
@@ -67,10 +68,11 @@ run 0 info "$work/s" --check
 prepare --resume
 [ "$(md5sum <"$mask")" = "$sum" ] || fail "the mask that is wanted again is another"
 
-# A photograph without it: the mask goes.
+# A photograph without it: the mask goes. Options of rendering are found where they are asked for.
 rm -r "$work/p" "$work/p-truth"
 monument 384x256 12
-prepare --resume
+prepare --resume --adapt none
+grep -q '"tuned"' "$work/s/scene.json" && fail "--adapt none finds options"
 says "occluders: 0 photographs show some"
 [ -e "$work/s/occluders" ] && fail "the mask stays"
 grep -q '"occluded": 0\.' "$work/s/scene.json" && fail "scene.json tells of an occluder"

@@ -39,6 +39,7 @@ static void usual_settings(void **state)
     assert_settings(&params, ORL_STAGE_MESH,
                     "{\"mesh\":\"none\",\"quality\":\"standard\",\"test\":[\"1.jpg\"]}");
     assert_settings(&params, ORL_STAGE_EXPOSE, "{\"exposures\":\"\",\"test\":[\"1.jpg\"]}");
+    assert_settings(&params, ORL_STAGE_TUNE, "{}");
     assert_settings(&params, ORL_STAGE_OCCLUDERS, "{\"find\":true}");
 }
 
@@ -58,6 +59,7 @@ static void other_settings(void **state)
     params.max_vram_bytes = (size_t)512 << 20;
     params.radius_neighbours = 9;
     params.fuse_cluster = 1;
+    params.adapt = ORL_ADAPT_NONE;
     assert_settings(&params, ORL_STAGE_CALIBRATE,
                     "{\"mapper\":\"global\",\"masks\":{},\"matching\":\"sequential\",\"quality\":"
                     "\"draft\",\"seed\":7,\"sharing\":\"each\"}");
@@ -67,6 +69,7 @@ static void other_settings(void **state)
                     "\"test\":[\"1.jpg\"]}");
     assert_settings(&params, ORL_STAGE_FUSE, "{\"cluster\":1,\"hull\":\"none\"}");
     assert_settings(&params, ORL_STAGE_RADII, "{\"neighbours\":9}");
+    assert_settings(&params, ORL_STAGE_TUNE, "{\"adapt\":\"none\"}");
     assert_settings(&params, ORL_STAGE_MESH,
                     "{\"mesh\":\"poisson\",\"quality\":\"draft\",\"test\":[\"1.jpg\"]}");
 }
