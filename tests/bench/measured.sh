@@ -7,7 +7,7 @@
 # that are missing. Without SECTION all sections are measured, which takes hours on two cores.
 # A section writes the page of its name. Work files lie in BUILD/measured. Needs jq.
 set -euo pipefail
-sections="scenes accuracy charts methods airieau parts stress memory trim radiance"
+sections="scenes accuracy charts methods airieau parts stress memory trim radiance web"
 [ $# -ge 3 ] || { sed -n '2,9s/^# *//p' "$0"; echo "sections: "$sections; exit 2; }
 build=$(realpath "$1") scenes=$(realpath -m "$2") datasets=$(realpath -m "$3")
 shift 3
@@ -21,10 +21,11 @@ mkdir -p "$scenes" "$work" "$pages"
 # --- commands ---
 
 # run COMMAND [NAME]: runs the command as a page shows it: programs are those of the build, and the
-# words SCENES, DATASETS, WORK and NAME stand for folders and for a scene.
+# words BUILD, SCENES, DATASETS, WORK and NAME stand for folders and for a scene.
 run() {
     local word words=()
     for word in $1; do
+        word=${word//BUILD/$build}
         word=${word//SCENES/$scenes}
         word=${word//DATASETS/$datasets}
         word=${word//WORK/$work}
@@ -531,6 +532,92 @@ END
     command_block "$again"
     print_table "$work/radiance.json" 'table(["", "PSNR, dB", "covered PSNR, dB", "SSIM"];
         .[] | [.row, (.mean.psnr_db | fixed(2)), (.mean.psnr_covered_db | fixed(2)), (.mean.ssim | fixed(3))])'
+}
+
+page_web() {
+    local measure='tests/web/measure.py BUILD SCENES/NAME --views 3 --json WORK/web.json'
+    local live='tests/web/measure_live.py BUILD SCENES/NAME --frames 120 --json WORK/web.json'
+    local walk='tests/web/measure_walk.py BUILD SCENES/NAME --rate 2 --json WORK/web.json'
+    local visit='tests/web/measure_visit.py BUILD SCENES/monument'
+    local kind name command
+    for kind in measure live walk; do
+        for name in $(scene_names fountain herz sceaux bronze temple monument dtu); do
+            [ $kind = measure ] || [[ " fountain temple monument " == *" $name "* ]] || continue
+            command=${!kind}
+            run "$command" "$name" >&2
+            cat "$work/web.json"
+        done | jq -s . >"$work/web_$kind.json"
+    done
+    head_of "The published page beside the renderer" "$(list $(scene_names fountain herz sceaux bronze temple monument dtu))"
+    cat <<'END'
+
+The page is drawn by headless Chromium on SwiftShader, the server's frames by Mesa's llvmpipe.
+END
+    command_block "$measure"
+    cat <<'END'
+publishes a scene, draws up to three held-out cameras and compares the pictures with the photographs and with those of
+`oriel render`. Both show the scene's exposure, not that of each photograph, so the figures of both lie below those of
+`oriel eval`. *First picture* is what must be loaded before the page shows points: page, poster, manifest, coarse points.
+Graphics memory is of a window of 1280x800 pixels. Processor time of a frame of the photograph's size is of all processes
+of the browser.
+
+END
+    print_table "$work/web_measure.json" '
+      table(["scene", "cameras", "page: PSNR, dB, and SSIM", "renderer", "page to renderer", "the worst, dB"];
+        .[] | [.scene, (.views | tostring)] + [range(3) as $k | (.mean[2 * $k] | fixed(2)) + ", " + (.mean[2 * $k + 1] | fixed(3))]
+          + [.worst_db | fixed(1)])'
+    print_table "$work/web_measure.json" '
+      table(["scene", "first picture, MB", "whole site, MB", "graphics memory, MB", "frame moving, ms", "at rest, ms",
+             "moving to points only"];
+        .[] | [.scene, (.first_mb | fixed(2)), (.whole_mb | fixed(1)), (.graphics_mb | fixed(0)), (.moving_ms | fixed(0)),
+               (.rest_ms | fixed(0)), (.moving_ms / .points_ms | fixed(2))])'
+    cat <<'END'
+What remains between page and renderer is in single pixels at outlines, where one or the other comparison falls out
+otherwise, and in the JPEG files of the page, of quality 95.
+
+## A visit
+END
+    command_block "$visit"
+    cat <<'END'
+opens the published page in windows of three sizes. Times count from the request for the page: when the browser first paints
+(the poster), when the graphics have finished the picture that takes the poster's place, and when everything is loaded and
+drawn sharply. In brackets: processor time of all processes of the browser. The browser runs already. Bytes are those of
+everything; frame time is that of a moving picture to points alone. Below the table: how much longer a frame of `oriel walk`
+takes when two clients ask at once, and how soon a page notices that its server was killed and that another one listens.
+
+| window | first paint | first picture | whole | bytes | memory | frame to points only |
+|---|---|---|---|---|---|---|
+END
+    run "$visit" >"$work/web_visit.txt"
+    grep '^|' "$work/web_visit.txt"
+    printf '\n'
+    grep -v '^|\|^load' "$work/web_visit.txt" | sed 's/^/    /'
+    printf '\nWithout a graphics chip, what bounds the first picture is that the browser makes each program of the frame anew.\n'
+    printf '\n## The server\n'
+    command_block "$live"
+    cat <<'END'
+walks past all photographs of a scene through `oriel walk`, 640x427 pixels a frame, and asks for the next frame when one
+has come. Processor time is that of all threads of the server.
+
+END
+    print_table "$work/web_live.json" '
+      table(["scene", "frames", "median of a frame, processor time, ms", "first frame to median", "longest frame to median",
+             "frames above 1.5 times the median"];
+        .[] | [.scene, (.frames | tostring), (.processor_median_ms | fixed(0)), (.processor_first_to_median | fixed(2)),
+               (.processor_longest_to_median | fixed(2)), (.processor_above_1_5 | tostring)])'
+    printf '## A walk of two minutes\n'
+    command_block "$walk"
+    cat <<'END'
+walks past all photographs and back through `oriel walk`, two views for each of 120 seconds, without standing still,
+and looks for pops (the change from a frame to the next, as a multiple of the largest of the changes around it), black
+frames, and growth of the server's memory. Changes are means of 160x107 grey pixels.
+
+END
+    print_table "$work/web_walk.json" '
+      table(["scene", "photographs", "frames", "median change, of 255", "largest", "largest to those around it", "black frames",
+             "memory there and back, MiB"];
+        .[] | [.scene, (.photographs | tostring), (.frames | tostring), (.median | fixed(1)), (.largest | fixed(1)),
+               (.pop | fixed(2)), (.black | tostring), ([.there_mib, .back_mib] | map(fixed(0)) | join(", "))])'
 }
 
 # --- all that is asked for ---

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""measure.py BUILD SCENE [--out DIR] [--views N] [--window WxH]: the published page of a scene beside `oriel render`.
+"""measure.py BUILD SCENE [--out DIR] [--views N] [--window WxH] [--json FILE]: the published page beside `oriel render`.
 
 Publishes SCENE, lets a headless Chromium on SwiftShader draw the held-out cameras, and prints PSNR
 and SSIM of page and renderer against the photographs and against each other, bytes until the first
@@ -85,6 +85,7 @@ def main():
     parser.add_argument("--out", default=None, help="keeps the pictures")
     parser.add_argument("--views", type=int, default=0, help="at most so many held-out cameras, evenly chosen")
     parser.add_argument("--window", default="1280x800", help="size of the page; a small one loads sooner")
+    parser.add_argument("--json", help="writes the means to this file")
     options = parser.parse_args()
     work = options.out or tempfile.mkdtemp()
     os.makedirs(work, exist_ok=True)
@@ -101,14 +102,16 @@ def main():
         browser.wait("return document.getElementById('poster').complete")
         print(f"poster after {time.monotonic() - start:.1f} s")
         browser.wait("return !!window.oriel && oriel.picture.renderer.frame !== null")
-        print(f"coarse points after {time.monotonic() - start:.1f} s, "
-              f"{browser.js('return oriel.files.bytes') / 1e6:.2f} MB of data")
+        first_mb = browser.js("return oriel.files.bytes") / 1e6
+        print(f"coarse points after {time.monotonic() - start:.1f} s, {first_mb:.2f} MB of data")
         browser.settle()
         print(f"everything after {time.monotonic() - start:.1f} s")
         memory = {role: resident_mib(pids) for role, pids in browser_processes(browser).items()}
         print("resident, MiB:", ", ".join(f"{role} {mib:.0f}" for role, mib in memory.items()))
-        print(f"{browser.js('return oriel.files.bytes') / 1e6:.1f} MB of data loaded")
-        print(f"graphics memory {browser.js('return oriel.picture.device.bytes + oriel.picture.cloud.bytes') / 1e6:.0f} MB")
+        whole_mb = browser.js("return oriel.files.bytes") / 1e6
+        graphics_mb = browser.js("return oriel.picture.device.bytes + oriel.picture.cloud.bytes") / 1e6
+        print(f"{whole_mb:.1f} MB of data loaded")
+        print(f"graphics memory {graphics_mb:.0f} MB")
         print("photograph         page: PSNR  SSIM  oriel: PSNR  SSIM  page to oriel: PSNR  SSIM")
         rows = []
         for camera in test:
@@ -127,6 +130,12 @@ def main():
         points = frame_ms(browser, test[0], 5)
         print(f"frame of {test[0]['width']}x{test[0]['height']}: {moving:.0f} ms of processor time, at rest {rest:.0f} ms, "
               f"points only {points:.0f} ms, ratio {moving / points:.2f}")
+        if options.json:
+            with open(options.json, "w") as file:
+                json.dump({"scene": os.path.basename(os.path.abspath(options.scene)), "views": len(rows),
+                           "first_mb": first_mb, "whole_mb": whole_mb, "graphics_mb": graphics_mb, "mean": mean,
+                           "worst_db": min(row[4] for row in rows), "moving_ms": moving, "rest_ms": rest,
+                           "points_ms": points}, file)
         for error in browser.errors():
             print("console:", error)
     finally:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""measure_walk.py BUILD SCENE [--seconds S] [--rate N] [--size WxH]: a long walk, watched for faults.
+"""measure_walk.py BUILD SCENE [--seconds S] [--rate N] [--size WxH] [--json FILE]: a long walk, watched for faults.
 
 Walks past all photographs of a scene, there and back, through `oriel walk`, with N views for each second of
 the walk, each asked for when the one before has come. Reports pops (a frame that differs from the
@@ -57,6 +57,7 @@ def main():
     parser.add_argument("--seconds", type=float, default=120)
     parser.add_argument("--rate", type=float, default=12)
     parser.add_argument("--size", default="640x427")
+    parser.add_argument("--json", help="writes the figures to this file")
     options = parser.parse_args()
     size = [int(x) for x in options.size.split("x")]
     count = int(options.seconds * options.rate)
@@ -86,6 +87,12 @@ def main():
     print(f"black frames: {black}")
     print(f"memory of the server, MiB: {memory[0]:.0f} at first, {max(memory[:half]):.0f} on the way there, "
           f"{max(memory[half:]):.0f} on the way back")
+    if options.json:
+        with open(options.json, "w") as file:
+            json.dump({"scene": os.path.basename(os.path.abspath(options.scene)), "photographs": len(photos),
+                       "frames": count, "processor_ms": used / count, "median": median(change), "largest": max(change),
+                       "pop": max(ratios), "black": black, "there_mib": max(memory[:half]),
+                       "back_mib": max(memory[half:])}, file)
 
 
 if __name__ == "__main__":
