@@ -7,28 +7,25 @@
 #include "core/file.h"
 #include "scene/colmap_internal.h"
 
-// From COLMAP's src/colmap/sensor/models.h, in the order of its ids. Models with one focal length have params f cx cy ...;
-// models with two have fx fy cx cy ...
+// From COLMAP's src/colmap/sensor/models.h, in the order of its ids.
 static const struct {
     const char *name;
-    int params, focal_lengths;
+    struct orl_colmap_lens lens;
 } models[] = {
-    {"SIMPLE_PINHOLE", 3, 1},        {"PINHOLE", 4, 2},        {"SIMPLE_RADIAL", 4, 1},
-    {"RADIAL", 5, 1},                {"OPENCV", 8, 2},         {"OPENCV_FISHEYE", 8, 2},
-    {"FULL_OPENCV", 12, 2},          {"FOV", 5, 2},            {"SIMPLE_RADIAL_FISHEYE", 4, 1},
-    {"RADIAL_FISHEYE", 5, 1},        {"THIN_PRISM_FISHEYE", 12, 2},
-    {"RAD_TAN_THIN_PRISM_FISHEYE", 16, 2}, {"SIMPLE_DIVISION", 4, 1}, {"DIVISION", 5, 2},
-    {"SIMPLE_FISHEYE", 3, 1},        {"FISHEYE", 4, 2},
+    {"SIMPLE_PINHOLE", {3, 1, ORL_LENS_FLAT}},      {"PINHOLE", {4, 2, ORL_LENS_FLAT}},
+    {"SIMPLE_RADIAL", {4, 1, ORL_LENS_FLAT}},       {"RADIAL", {5, 1, ORL_LENS_FLAT}},
+    {"OPENCV", {8, 2, ORL_LENS_FLAT}},              {"OPENCV_FISHEYE", {8, 2, ORL_LENS_FISHEYE}},
+    {"FULL_OPENCV", {12, 2, ORL_LENS_FLAT}},        {"FOV", {5, 2, ORL_LENS_FOV}},
+    {"SIMPLE_RADIAL_FISHEYE", {4, 1, ORL_LENS_FISHEYE}}, {"RADIAL_FISHEYE", {5, 1, ORL_LENS_FISHEYE}},
+    {"THIN_PRISM_FISHEYE", {12, 2, ORL_LENS_THIN_PRISM}},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", {16, 2, ORL_LENS_RAD_TAN_THIN_PRISM}},
+    {"SIMPLE_DIVISION", {4, 1, ORL_LENS_DIVISION}}, {"DIVISION", {5, 2, ORL_LENS_DIVISION}},
+    {"SIMPLE_FISHEYE", {3, 1, ORL_LENS_FISHEYE}},   {"FISHEYE", {4, 2, ORL_LENS_FISHEYE}},
 };
 
-int orl_colmap_model_params(int model)
+struct orl_colmap_lens orl_colmap_model_lens(int model)
 {
-    return model >= 0 && model < (int)ORL_COUNT(models) ? models[model].params : 0;
-}
-
-int orl_colmap_model_focal_lengths(int model)
-{
-    return models[model].focal_lengths;
+    return model >= 0 && model < (int)ORL_COUNT(models) ? models[model].lens : (struct orl_colmap_lens){0};
 }
 
 int orl_colmap_model_id(const char *name)
@@ -48,7 +45,7 @@ const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t wid
         if (!isfinite(camera->params[i]))
             return "a camera parameter is not finite";
     const double *p = camera->params;
-    bool one = models[camera->model].focal_lengths == 1;
+    bool one = orl_colmap_model_lens(camera->model).focal_lengths == 1;
     camera->pinhole = (struct orl_camera){
         .width = (int)width, .height = (int)height, .fx = p[0], .fy = one ? p[0] : p[1],
         .cx = one ? p[1] : p[2], .cy = one ? p[2] : p[3]};

@@ -57,7 +57,7 @@ static enum orl_result read_camera(struct reader *r, struct orl_colmap_camera *c
     ORL_TRY(take(r, &head, sizeof head, "a camera"));
     camera->id = head.id;
     camera->model = head.model;
-    camera->param_count = orl_colmap_model_params(head.model);
+    camera->param_count = orl_colmap_model_lens(head.model).params;
     if (!camera->param_count)
         return orl_fail(r->log, ORL_ERR_FORMAT, "%s: byte %zu: unknown camera model %d; undistort "
                         "the pictures with the program that made it", r->path, start, head.model);

@@ -6,18 +6,21 @@
 #include "scene/colmap.h"
 #include "scene/colmap_internal.h"
 
-enum {
-    SIMPLE_RADIAL = 2, RADIAL, OPENCV, OPENCV_FISHEYE, FULL_OPENCV, FOV,
-    SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE, THIN_PRISM_FISHEYE, RAD_TAN_THIN_PRISM_FISHEYE,
-    SIMPLE_DIVISION, DIVISION, SIMPLE_FISHEYE, FISHEYE,
-};
-
 // Scales u, v by `radial` and adds OpenCV's tangential terms.
-static void brown(double radial, double p1, double p2, double uv[2])
+static void tangential(double radial, double p1, double p2, double uv[2])
 {
     double u = uv[0], v = uv[1], r2 = u * u + v * v;
     uv[0] = u * radial + 2 * p1 * u * v + p2 * (r2 + 2 * u * u);
     uv[1] = v * radial + 2 * p2 * u * v + p1 * (r2 + 2 * v * v);
+}
+
+// k1 k2 p1 p2 k3 k4 k5 k6 of OpenCV, of which the simpler models have the first.
+static void brown(const double *terms, int count, double uv[2])
+{
+    double k[8] = {0}, r2 = uv[0] * uv[0] + uv[1] * uv[1], r4 = r2 * r2;
+    memcpy(k, terms, (size_t)count * sizeof *k);
+    tangential((1 + k[0] * r2 + k[1] * r4 + k[4] * r4 * r2) / (1 + k[5] * r2 + k[6] * r4 + k[7] * r4 * r2), k[2], k[3],
+               uv);
 }
 
 // Replaces the tangent of the angle t from the axis by t (1 + k0 t^2 + k1 t^4 + ...).
@@ -49,7 +52,7 @@ static void thin_prism(const double *k, double uv[2])
 {
     fisheye(NULL, 0, uv);
     double u = uv[0], v = uv[1], r2 = u * u + v * v, r4 = r2 * r2;
-    brown(1 + k[0] * r2 + k[1] * r4 + k[4] * r4 * r2 + k[5] * r4 * r4, k[2], k[3], uv);
+    tangential(1 + k[0] * r2 + k[1] * r4 + k[4] * r4 * r2 + k[5] * r4 * r4, k[2], k[3], uv);
     uv[0] += k[6] * r2;
     uv[1] += k[7] * r2;
 }
@@ -76,50 +79,29 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
                                double pixel[2])
 {
     const struct orl_camera *c = &camera->pinhole;
+    const struct orl_colmap_lens lens = orl_colmap_model_lens(camera->model);
     // Distortion terms follow f cx cy or fx fy cx cy.
-    const double *k = camera->params + orl_colmap_model_focal_lengths(camera->model) + 2;
-    double uv[2] = {ray[0], ray[1]}, r2 = ray[0] * ray[0] + ray[1] * ray[1], r4 = r2 * r2;
-    switch (camera->model) {
-    case SIMPLE_RADIAL:
-        brown(1 + k[0] * r2, 0, 0, uv);
+    const double *k = camera->params + lens.focal_lengths + 2;
+    const int count = lens.params - lens.focal_lengths - 2;
+    double uv[2] = {ray[0], ray[1]};
+    switch (lens.kind) {
+    case ORL_LENS_FLAT:
+        brown(k, count, uv);
         break;
-    case RADIAL:
-        brown(1 + k[0] * r2 + k[1] * r4, 0, 0, uv);
+    case ORL_LENS_FISHEYE:
+        fisheye(k, count, uv);
         break;
-    case OPENCV:
-        brown(1 + k[0] * r2 + k[1] * r4, k[2], k[3], uv);
-        break;
-    case FULL_OPENCV:
-        brown((1 + k[0] * r2 + k[1] * r4 + k[4] * r4 * r2) /
-                  (1 + k[5] * r2 + k[6] * r4 + k[7] * r4 * r2), k[2], k[3], uv);
-        break;
-    case OPENCV_FISHEYE:
-        fisheye(k, 4, uv);
-        break;
-    case SIMPLE_RADIAL_FISHEYE:
-        fisheye(k, 1, uv);
-        break;
-    case RADIAL_FISHEYE:
-        fisheye(k, 2, uv);
-        break;
-    case FOV:
+    case ORL_LENS_FOV:
         fov(k[0], uv);
         break;
-    case THIN_PRISM_FISHEYE:
+    case ORL_LENS_THIN_PRISM:
         thin_prism(k, uv);
         break;
-    case RAD_TAN_THIN_PRISM_FISHEYE:
+    case ORL_LENS_RAD_TAN_THIN_PRISM:
         rad_tan_thin_prism(k, uv);
         break;
-    case SIMPLE_DIVISION:
-    case DIVISION:
+    case ORL_LENS_DIVISION:
         division(k[0], uv);
-        break;
-    case SIMPLE_FISHEYE:
-    case FISHEYE:
-        fisheye(NULL, 0, uv);
-        break;
-    default: // SIMPLE_PINHOLE, PINHOLE
         break;
     }
     pixel[0] = c->fx * uv[0] + c->cx;
@@ -128,19 +110,10 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
 
 bool orl_colmap_camera_is_pinhole(const struct orl_colmap_camera *camera)
 {
-    switch (camera->model) {
-    case OPENCV_FISHEYE:
-    case SIMPLE_RADIAL_FISHEYE:
-    case RADIAL_FISHEYE:
-    case THIN_PRISM_FISHEYE:
-    case RAD_TAN_THIN_PRISM_FISHEYE:
-    case SIMPLE_FISHEYE:
-    case FISHEYE:
+    const struct orl_colmap_lens lens = orl_colmap_model_lens(camera->model);
+    if (lens.kind == ORL_LENS_FISHEYE || lens.kind == ORL_LENS_THIN_PRISM || lens.kind == ORL_LENS_RAD_TAN_THIN_PRISM)
         return false;
-    default:
-        break;
-    }
-    for (int i = orl_colmap_model_focal_lengths(camera->model) + 2; i < camera->param_count; i++)
+    for (int i = lens.focal_lengths + 2; i < camera->param_count; i++)
         if (camera->params[i] != 0)
             return false;
     return true;

@@ -4,10 +4,16 @@
 
 #include "scene/colmap.h"
 
-// Number of parameters of a camera model, 0 when it is unknown.
-int orl_colmap_model_params(int model);
-// 1: the model's parameters start with f cx cy; 2: with fx fy cx cy. The model must be known.
-int orl_colmap_model_focal_lengths(int model);
+// How a camera model distorts: as OpenCV does, or not at all; by the angle from the axis; ...
+enum orl_colmap_lens_kind { ORL_LENS_FLAT, ORL_LENS_FISHEYE, ORL_LENS_FOV, ORL_LENS_THIN_PRISM,
+                            ORL_LENS_RAD_TAN_THIN_PRISM, ORL_LENS_DIVISION };
+struct orl_colmap_lens {
+    int params;        // how many the model has
+    int focal_lengths; // 1: they start with f cx cy; 2: with fx fy cx cy; distortion follows
+    enum orl_colmap_lens_kind kind;
+};
+// All 0 when the model is unknown.
+struct orl_colmap_lens orl_colmap_model_lens(int model);
 // COLMAP's id of a model's name, -1 when it is unknown.
 int orl_colmap_model_id(const char *name);
 

@@ -29,7 +29,7 @@ static enum orl_result read_camera(struct orl_text_lines *l, struct orl_colmap_c
     if (length < sizeof name)
         memcpy(name, l->at, length);
     camera->model = orl_colmap_model_id(name);
-    camera->param_count = orl_colmap_model_params(camera->model);
+    camera->param_count = orl_colmap_model_lens(camera->model).params;
     if (!camera->param_count)
         return unknown_model(l, name);
     l->at += length;

@@ -65,7 +65,7 @@ static const char *camera_problem(const struct orl_known_camera *given)
                               given->width > ORL_IMAGE_MAX_SIDE ||
                               given->height > ORL_IMAGE_MAX_SIDE)
         return "the picture size is absurd";
-    int count = orl_colmap_model_params(given->model);
+    int count = orl_colmap_model_lens(given->model).params;
     for (int i = 0; i < count; i++)
         if (!isfinite(given->params[i]) || fabs(given->params[i]) > 1e7)
             return "a camera parameter is absurd";
@@ -86,7 +86,7 @@ static enum orl_result add_camera(const struct orl_log *log, const char *file, c
     ORL_TRY(ORL_GROW(log, known->gaps, known->gap_capacity, count));
     struct orl_colmap_camera *camera = &model->cameras[count];
     *camera = (struct orl_colmap_camera){.id = (uint32_t)count + 1, .model = given->model,
-                                         .param_count = orl_colmap_model_params(given->model)};
+                                         .param_count = orl_colmap_model_lens(given->model).params};
     memcpy(camera->params, given->params, sizeof camera->params);
     known->gaps[count] = given->gap;
     model->camera_count++;
@@ -371,7 +371,7 @@ enum orl_result orl_known_camera_settle(const struct orl_log *log,
     struct orl_colmap_camera *camera = &known->model.cameras[index];
     struct orl_known_gap *gap = &known->gaps[index];
     int told_width = camera->pinhole.width, told_height = camera->pinhole.height;
-    int focals = orl_colmap_model_focal_lengths(camera->model);
+    int focals = orl_colmap_model_lens(camera->model).focal_lengths;
     double *p = camera->params, sx = 1, sy = 1;
     if (!gap->size && (width != told_width || height != told_height)) {
         sx = (double)width / told_width;
