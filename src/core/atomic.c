@@ -1,7 +1,6 @@
 // Files that appear under their final name only when they are complete.
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +11,6 @@
 #include <unistd.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 
 enum {
     LINKS_MAX = 40,     // Linux's own limit
@@ -29,26 +27,19 @@ static enum orl_result fail_errno(const struct orl_log *log, const char *path)
     return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
 }
 
-enum orl_result orl_path_follow(const struct orl_log *log, const char *path, char **target)
+enum orl_result orl_path_follow(const struct orl_log *log, const char *path, char target[ORL_PATH_SIZE])
 {
-    char *current = orl_strdup(log, path), to[PATH_MAX];
-    for (int links = 0; current; links++) {
-        ssize_t length = readlink(current, to, sizeof to - 1);
-        if (length < 0) {
-            *target = current;
-            return ORL_OK;
-        }
-        if (links == LINKS_MAX) {
-            free(current);
+    char to[ORL_PATH_SIZE];
+    ssize_t length;
+    orl_path_print(target, "", "%s", path);
+    for (int links = 0; (length = readlink(target, to, sizeof to - 1)) >= 0; links++) {
+        if (links == LINKS_MAX)
             return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(ELOOP));
-        }
         to[length] = '\0';
-        size_t dir = *to == '/' ? 0 : (size_t)(orl_path_name(current) - current);
-        char *next = orl_format(log, "%.*s%s", (int)dir, current, to);
-        free(current);
-        current = next;
+        size_t dir = *to == '/' ? 0 : (size_t)(orl_path_name(target) - target);
+        snprintf(target + dir, ORL_PATH_SIZE - dir, "%s", to);
     }
-    return ORL_ERR_MEMORY;
+    return ORL_OK;
 }
 
 // With "--json /dev/stdout >FILE" output must go into the file that the shell opened, which a
@@ -66,9 +57,8 @@ static enum orl_result begin_direct(const struct orl_log *log, const char *path,
                                     struct orl_atomic_file *file)
 {
     file->direct = true;
-    file->path = orl_strdup(log, path);
-    file->temp = orl_strdup(log, path);
-    ORL_TRY_MEMORY(file->path && file->temp);
+    orl_path_print(file->path, "", "%s", path);
+    orl_path_print(file->temp, "", "%s", path);
     file->fd = open(path, O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC);
     return file->fd >= 0 ? ORL_OK : fail_errno(log, path);
 }
@@ -83,15 +73,15 @@ static const char *name_tail(const char *path)
     return name + cut;
 }
 
-char *orl_temp_name(const struct orl_log *log, const char *prefix, const char *path)
+enum orl_result orl_temp_name(const struct orl_log *log, const char *prefix, const char *path,
+                              char name[ORL_PATH_SIZE])
 {
     unsigned long long number;
-    if (getrandom(&number, sizeof number, 0) != sizeof number) {
-        (void)!fail_errno(log, path);
-        return NULL;
-    }
-    return orl_format(log, "%.*s%s%0*llx-%s", (int)(orl_path_name(path) - path), path, prefix,
-                      NUMBER_DIGITS, number, name_tail(path));
+    if (getrandom(&number, sizeof number, 0) != sizeof number)
+        return fail_errno(log, path);
+    orl_path_print(name, "", "%.*s%s%0*llx-%s", (int)(orl_path_name(path) - path), path, prefix,
+                   NUMBER_DIGITS, number, name_tail(path));
+    return ORL_OK;
 }
 
 bool orl_temp_is_of(const char *name, const char *prefix, const char *path)
@@ -106,19 +96,12 @@ bool orl_temp_is_of(const char *name, const char *prefix, const char *path)
 
 static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_file *file)
 {
-    for (int tries = 0; tries < TRIES_MAX; tries++) {
-        file->temp = orl_temp_name(log, orl_part_prefix, file->path);
-        ORL_TRY_MEMORY(file->temp);
+    for (int tries = 1; file->fd < 0; tries++) {
+        ORL_TRY(orl_temp_name(log, orl_part_prefix, file->path, file->temp));
         file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-        if (file->fd >= 0)
-            break;
-        free(file->temp);
-        file->temp = NULL;
-        if (errno != EEXIST)
-            break;
+        if (file->fd < 0 && (errno != EEXIST || tries == TRIES_MAX))
+            return fail_errno(log, file->path);
     }
-    if (!file->temp)
-        return fail_errno(log, file->path);
     // The lock tells orl_dir_sweep that a writer is active. File systems without locks lack this
     // protection.
     (void)!flock(file->fd, LOCK_EX | LOCK_NB);
@@ -134,7 +117,7 @@ enum orl_result orl_atomic_begin(const struct orl_log *log, const char *path,
     enum orl_result result;
     if (there && !S_ISDIR(st.st_mode) && (!S_ISREG(st.st_mode) || is_standard_stream(&st)))
         result = begin_direct(log, path, file);
-    else if ((result = orl_path_follow(log, path, &file->path)) == ORL_OK)
+    else if ((result = orl_path_follow(log, path, file->path)) == ORL_OK)
         result = open_part(log, file);
     if (result == ORL_OK && there && !file->direct)
         (void)!fchmod(file->fd, st.st_mode & 0777); // the new file keeps the old permissions
@@ -229,13 +212,11 @@ void orl_atomic_abort(struct orl_atomic_file *file)
         return;
     if (file->stream)
         fclose(file->stream);
-    if (file->temp && file->fd >= 0) {
+    if (*file->temp && file->fd >= 0) {
         if (!file->direct)
             unlink(file->temp);
         close(file->fd);
     }
-    free(file->temp);
-    free(file->path);
     *file = (struct orl_atomic_file){.fd = -1};
 }
 

@@ -106,37 +106,22 @@ bool orl_path_is_inside(const char *dir, const char *path)
     return inside;
 }
 
-static enum orl_result open_to_read(const struct orl_log *log, const char *path, int *fd,
-                                    size_t *size)
-{
-    // O_NONBLOCK: opening a FIFO would otherwise wait for a writer, perhaps for ever.
-    *fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (*fd < 0)
-        return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
-                        strerror(errno));
-    struct stat st;
-    const char *why = fstat(*fd, &st) != 0 ? strerror(errno)
-                      : !S_ISREG(st.st_mode) ? "not a regular file"
-                                             : NULL;
-    if (why) {
-        close(*fd);
-        *fd = -1;
-        return orl_fail(log, ORL_ERR_IO, "%s: %s", path, why);
-    }
-    *size = (size_t)st.st_size;
-    return ORL_OK;
-}
-
 enum orl_result orl_file_open(const struct orl_log *log, const char *path, FILE **stream)
 {
-    int fd;
-    size_t size;
+    // O_NONBLOCK: opening a FIFO would otherwise wait for a writer, perhaps for ever.
+    int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    struct stat st;
     *stream = NULL;
-    enum orl_result result = open_to_read(log, path, &fd, &size);
-    if (result == ORL_OK && !(*stream = fdopen(fd, "rb"))) {
-        close(fd);
+    if (fd < 0)
+        return orl_fail(log, errno == ENOENT ? ORL_ERR_NOT_FOUND : ORL_ERR_IO, "%s: %s", path,
+                        strerror(errno));
+    enum orl_result result = ORL_OK;
+    if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode))
+        result = orl_fail(log, ORL_ERR_IO, "%s: not a regular file", path);
+    else if (!(*stream = fdopen(fd, "rb")))
         result = orl_fail(log, ORL_ERR_MEMORY, "%s: %s", path, strerror(errno));
-    }
+    if (result != ORL_OK)
+        close(fd);
     return result;
 }
 
@@ -144,42 +129,30 @@ enum orl_result orl_file_read(const struct orl_log *log, const char *path, size_
                               uint8_t **data, size_t *size)
 {
     const size_t large = 64 << 20;
+    FILE *stream;
+    struct stat st;
     *data = NULL;
     *size = 0;
-    int fd = -1;
-    size_t total = 0, done = 0;
-    uint8_t *bytes = NULL;
-    ORL_TRY(open_to_read(log, path, &fd, &total));
+    ORL_TRY(orl_file_open(log, path, &stream));
     enum orl_result result = ORL_OK;
-    if (total > max_size) {
+    size_t total = fstat(fileno(stream), &st) == 0 ? (size_t)st.st_size : 0;
+    if (total > max_size)
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: %zu bytes, more than the %zu expected", path,
                           total, max_size);
-        goto end;
-    }
-    if (total > large && total > orl_memory_available()) // a sparse file claims any size
+    else if (total > large && total > orl_memory_available()) // a sparse file claims any size
         result = orl_fail(log, ORL_ERR_MEMORY, "%s: %zu bytes are more than the memory left", path,
                           total);
-    else if (!(bytes = orl_array(log, total + 1, 1)))
+    else if (!(*data = orl_array(log, total + 1, 1)))
         result = ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        goto end;
-    while (done < total) {
-        ssize_t got = read(fd, bytes + done, total - done);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got <= 0) {
-            result = orl_fail(log, ORL_ERR_IO, "%s: read stopped at byte %zu of %zu: %s", path,
-                              done, total, got < 0 ? strerror(errno) : "end of file");
-            goto end;
-        }
-        done += (size_t)got;
+    else if ((*size = fread(*data, 1, total, stream)) < total)
+        result = orl_fail(log, ORL_ERR_IO, "%s: read stopped at byte %zu of %zu: %s", path, *size, total,
+                          ferror(stream) ? strerror(errno) : "end of file");
+    fclose(stream);
+    if (result != ORL_OK) {
+        free(*data);
+        *data = NULL;
+        *size = 0;
     }
-    *data = bytes;
-    *size = total;
-    bytes = NULL;
-end:
-    free(bytes);
-    close(fd);
     return result;
 }
 
@@ -333,36 +306,22 @@ void orl_names_finish(struct orl_names *names)
 
 enum orl_result orl_file_hash(const struct orl_log *log, const char *path, uint64_t *hash)
 {
+    uint8_t chunk[1 << 14];
+    FILE *stream = NULL;
     *hash = 0;
-    int fd = -1;
-    size_t total = 0;
-    ORL_TRY(open_to_read(log, path, &fd, &total));
-    enum { CHUNK = 1 << 16 };
-    uint8_t *chunk = orl_array(log, CHUNK, 1);
     XXH3_state_t *state = XXH3_createState();
-    enum orl_result result = ORL_OK;
-    if (!chunk || !state) {
-        result = ORL_ERR_MEMORY;
-        goto end;
-    }
-    XXH3_64bits_reset(state);
-    for (;;) {
-        ssize_t got = read(fd, chunk, CHUNK);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0) {
+    enum orl_result result = state ? orl_file_open(log, path, &stream) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        XXH3_64bits_reset(state);
+        for (size_t got; (got = fread(chunk, 1, sizeof chunk, stream)) > 0;)
+            XXH3_64bits_update(state, chunk, got);
+        if (ferror(stream))
             result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-            goto end;
-        }
-        if (got == 0)
-            break;
-        XXH3_64bits_update(state, chunk, (size_t)got);
+        else
+            *hash = XXH3_64bits_digest(state);
+        fclose(stream);
     }
-    *hash = XXH3_64bits_digest(state);
-end:
     XXH3_freeState(state);
-    free(chunk);
-    close(fd);
     return result;
 }
 

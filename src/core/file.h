@@ -45,9 +45,9 @@ enum orl_result orl_file_open(const struct orl_log *log, const char *path,
 // `path` is a symbolic link, the link stays and its target is replaced. Standard output and special
 // files (a device, a FIFO) are written directly.
 struct orl_atomic_file {
-    char *temp, *path; // owned; equal when written directly
-    int fd;            // of temp
-    FILE *stream;      // of orl_atomic_open, owned: not for fclose
+    char temp[ORL_PATH_SIZE], path[ORL_PATH_SIZE]; // equal when written directly
+    int fd;       // of temp
+    FILE *stream; // of orl_atomic_open, owned: not for fclose
     bool direct;
 };
 // Creates an empty file->temp, which the writer opens by name.
@@ -72,12 +72,12 @@ enum orl_result orl_flush(const struct orl_log *log, const char *path) ORL_CHECK
 // Copies a regular file, making the folders that lead to `to`.
 enum orl_result orl_file_copy(const struct orl_log *log, const char *from,
                               const char *to) ORL_CHECK_RESULT;
-// The name at the end of a chain of symbolic links, released with free(). The file may be missing.
+// The name at the end of a chain of symbolic links. The file may be missing.
 enum orl_result orl_path_follow(const struct orl_log *log, const char *path,
-                                char **target) ORL_CHECK_RESULT;
-// "PREFIX, a random number, the name": a new temporary name beside `path`, released with free().
-// NULL, logged: an error.
-char *orl_temp_name(const struct orl_log *log, const char *prefix, const char *path);
+                                char target[ORL_PATH_SIZE]) ORL_CHECK_RESULT;
+// "PREFIX, a random number, the name": a new temporary name beside `path`.
+enum orl_result orl_temp_name(const struct orl_log *log, const char *prefix, const char *path,
+                              char name[ORL_PATH_SIZE]) ORL_CHECK_RESULT;
 // True for such a name; with a path, for one that was made for this path.
 bool orl_temp_is_of(const char *name, const char *prefix, const char *path);
 extern const char orl_part_prefix[]; // of what orl_dir_sweep removes when no writer holds it

@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 
 static const char old_prefix[] = ".oriel-old-";
 enum { TRIES_MAX = 16, WAITS_MAX = 500, WAIT_NS = 10000000 };
@@ -78,25 +77,19 @@ static enum orl_result meet_others(const struct orl_log *log, const char *parent
 
 static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
 {
-    for (int tries = 0; !dir->outer && tries < TRIES_MAX; tries++) {
-        char *outer = orl_temp_name(log, orl_part_prefix, dir->out);
-        ORL_TRY_MEMORY(outer);
-        if (mkdir(outer, 0777) == 0) {
-            dir->outer = outer;
-            break;
-        }
-        free(outer);
-        if (errno != EEXIST)
-            break;
+    for (int tries = 1; !*dir->outer; tries++) {
+        char outer[ORL_PATH_SIZE];
+        ORL_TRY(orl_temp_name(log, orl_part_prefix, dir->out, outer));
+        if (mkdir(outer, 0777) == 0)
+            memcpy(dir->outer, outer, sizeof outer);
+        else if (errno != EEXIST || tries == TRIES_MAX)
+            return orl_fail(log, ORL_ERR_IO, "%s: no folder can be made beside it: %s", dir->out,
+                            strerror(errno));
     }
-    if (!dir->outer)
-        return orl_fail(log, ORL_ERR_IO, "%s: no folder can be made beside it: %s", dir->out,
-                        strerror(errno));
     dir->fd = open(dir->outer, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (dir->fd >= 0)
         (void)!flock(dir->fd, LOCK_EX | LOCK_NB);
-    dir->path = orl_path_join(log, dir->outer, "new");
-    return dir->path ? orl_dir_make(log, dir->path) : ORL_ERR_MEMORY;
+    return orl_dir_make(log, orl_path_print(dir->path, dir->outer, "new"));
 }
 
 static enum orl_result begin(const struct orl_log *log, const char *out, bool over,
@@ -104,7 +97,7 @@ static enum orl_result begin(const struct orl_log *log, const char *out, bool ov
 {
     char *named = orl_path_append(log, out, ""); // without slashes at its end
     *dir = (struct orl_new_dir){.fd = -1};
-    enum orl_result result = named ? orl_path_follow(log, named, &dir->out) : ORL_ERR_MEMORY;
+    enum orl_result result = named ? orl_path_follow(log, named, dir->out) : ORL_ERR_MEMORY;
     free(named);
     ORL_TRY(result);
     const char *name = orl_path_name(dir->out);
@@ -144,13 +137,10 @@ enum orl_result orl_new_dir_begin_over(const struct orl_log *log, const char *ou
 
 static void close_dir(const struct orl_log *log, struct orl_new_dir *dir)
 {
-    if (dir->outer && orl_dir_remove(log, dir->outer) != ORL_OK)
+    if (*dir->outer && orl_dir_remove(log, dir->outer) != ORL_OK)
         orl_logf(log, ORL_LOG_WARNING, "%s is left over", dir->outer);
     if (dir->fd >= 0)
         close(dir->fd);
-    free(dir->path);
-    free(dir->out);
-    free(dir->outer);
     *dir = (struct orl_new_dir){.fd = -1};
 }
 
@@ -165,13 +155,13 @@ enum orl_result orl_new_dir_finish(const struct orl_log *log, struct orl_new_dir
 // Where names cannot be exchanged. The old folder may be swept once nothing needs it.
 static enum orl_result replace_aside(const struct orl_log *log, const struct orl_new_dir *dir)
 {
-    char *old = orl_temp_name(log, old_prefix, dir->out);
-    enum orl_result result = old ? name_dir(log, dir->out, old) : ORL_ERR_MEMORY;
-    if (result == ORL_OK && (result = name_dir(log, dir->path, dir->out)) != ORL_OK)
-        (void)!rename(old, dir->out);
-    else if (result == ORL_OK)
-        result = name_dir(log, old, dir->path);
-    free(old);
+    char old[ORL_PATH_SIZE];
+    ORL_TRY(orl_temp_name(log, old_prefix, dir->out, old));
+    ORL_TRY(name_dir(log, dir->out, old));
+    enum orl_result result = name_dir(log, dir->path, dir->out);
+    if (result == ORL_OK)
+        return name_dir(log, old, dir->path);
+    (void)!rename(old, dir->out);
     return result;
 }
 
@@ -197,6 +187,6 @@ enum orl_result orl_new_dir_replace(const struct orl_log *log, struct orl_new_di
 
 void orl_new_dir_abort(const struct orl_log *log, struct orl_new_dir *dir)
 {
-    if (dir->outer || dir->out)
+    if (*dir->outer || *dir->out)
         close_dir(log, dir);
 }

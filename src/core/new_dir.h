@@ -9,10 +9,10 @@
 // link stays and the folder takes the name that it leads to. Two runs do not fill the same folder
 // at once: the second is refused.
 struct orl_new_dir {
-    char *path;  // owned: where its files go until it is finished
-    char *out;   // owned: its final name
-    char *outer; // owned: the folder around `path`
-    int fd;      // of `outer`, which is locked: no other run takes it for one that was left
+    char path[ORL_PATH_SIZE];  // where its files go until it is finished
+    char out[ORL_PATH_SIZE];   // its final name
+    char outer[ORL_PATH_SIZE]; // the folder around `path`; "": none has been made
+    int fd;                    // of `outer`, which is locked: no other run takes it for one that was left
 };
 
 // Refuses an `out` that is a file or a folder that is not empty.
