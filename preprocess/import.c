@@ -66,7 +66,7 @@ static void finish(struct import_job *job)
 // Fills in what the file of cameras states and the user leaves open.
 static void resolve(const struct import_job *job, struct orl_import_params *params)
 {
-    const char *stated = job->known.points_file;
+    const char *stated = *job->known.points_file ? job->known.points_file : NULL;
     if (params->points != ORL_IMPORT_STATED_POINTS)
         return;
     bool there = stated && orl_path_is_file(stated);

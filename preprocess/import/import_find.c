@@ -439,10 +439,14 @@ static enum orl_result find_stated_masks(struct import_job *job)
         const char *told = known->pictures[view->image->id - 1].mask;
         if (!told)
             continue;
-        result = orl_known_find(job->log, known->folder, told, &view->mask.path);
-        if (view->mask.path)
-            view->mask.kind = IMPORT_PICTURE;
-        missing += !view->mask.path;
+        char path[ORL_PATH_SIZE];
+        if (!orl_known_find(known->folder, told, path)) {
+            missing++;
+            continue;
+        }
+        view->mask.kind = IMPORT_PICTURE;
+        view->mask.path = orl_strdup(job->log, path);
+        result = view->mask.path ? ORL_OK : ORL_ERR_MEMORY;
     }
     if (result == ORL_OK && missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: masks of %zu of %zu cameras, which their file names, are not "

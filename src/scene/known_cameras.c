@@ -23,8 +23,6 @@ void orl_known_cameras_finish(struct orl_known_cameras *known)
         free(known->pictures[i].mask);
     }
     free(known->pictures);
-    free(known->points_file);
-    free(known->folder);
     memset(known, 0, sizeof *known);
 }
 
@@ -99,35 +97,29 @@ static enum orl_result add_camera(const struct orl_log *log, const char *file, c
     return problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, problem) : ORL_OK;
 }
 
-// A copy of a stated path, as other systems write them, too: '/' between its parts, no "./" ahead of
-// them. NULL for NULL.
-static char *plain_path(const struct orl_log *log, const char *stated)
+// A stated path, as other systems write them, too: '/' between its parts, no "./" ahead of them.
+static const char *plain_path(const char *stated, char path[ORL_PATH_SIZE])
 {
-    char *path = stated ? orl_strdup(log, stated) : NULL;
-    for (char *at = path; at && *at; at++)
-        if (*at == '\\')
-            *at = '/';
-    while (path && strncmp(path, "./", 2) == 0)
-        memmove(path, path + 2, strlen(path + 2) + 1);
+    while (strncmp(stated, "./", 2) == 0 || strncmp(stated, ".\\", 2) == 0)
+        stated += 2;
+    orl_path_print(path, "", "%s", stated);
+    for (char *at = path; (at = strchr(at, '\\')) != NULL;)
+        *at = '/';
     return path;
 }
 
-enum orl_result orl_known_find(const struct orl_log *log, const char *folder, const char *stated,
-                               char **path)
+bool orl_known_find(const char *folder, const char *stated, char path[ORL_PATH_SIZE])
 {
-    char *plain = plain_path(log, stated), *at = plain;
-    bool there = plain && *plain == '/' && orl_path_is_file(plain);
-    *path = there ? orl_strdup(log, plain) : NULL;
-    enum orl_result result = plain && (!there || *path) ? ORL_OK : ORL_ERR_MEMORY;
-    while (result == ORL_OK && !*path && at) {
+    char plain[ORL_PATH_SIZE];
+    orl_path_print(path, "", "%s", plain_path(stated, plain));
+    if (*plain == '/' && orl_path_is_file(path))
+        return true;
+    for (const char *at = plain; at; at = strchr(at, '/')) {
         at += strspn(at, "/");
-        const char *next = ORL_PATH(folder, "%s", at);
-        if (orl_path_is_file(next))
-            result = (*path = orl_strdup(log, next)) ? ORL_OK : ORL_ERR_MEMORY;
-        at = strchr(at, '/');
+        if (orl_path_is_file(orl_path_print(path, folder, "%s", at)))
+            return true;
     }
-    free(plain);
-    return result;
+    return false;
 }
 
 enum orl_result orl_known_add(const struct orl_log *log, const char *file, const char *place,
@@ -142,7 +134,8 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
     size_t count = model->image_count;
     ORL_TRY(ORL_GROW(log, model->images, model->image_capacity, count));
     ORL_TRY(ORL_GROW(log, known->pictures, known->picture_capacity, count));
-    char *path = plain_path(log, given->path), *mask = plain_path(log, given->mask);
+    char plain[ORL_PATH_SIZE], *path = orl_strdup(log, plain_path(given->path, plain));
+    char *mask = given->mask ? orl_strdup(log, plain_path(given->mask, plain)) : NULL;
     if (!path || (given->mask && !mask)) {
         free(path);
         free(mask);

@@ -36,11 +36,11 @@ struct orl_known_cameras {
     struct orl_known_picture *pictures;
     size_t picture_count, picture_capacity;
     bool splits;       // the file states which photographs are held out
-    char *points_file; // a cloud in the cameras' world, if it is there; NULL: none is stated; owned
+    char points_file[ORL_PATH_SIZE]; // a cloud in the cameras' world, if it is there; "": none is stated
     // The file's coordinates minus `origin` are those of the model and the room.
     double origin[3];
     struct orl_room room; // that the file states
-    char *folder; // owned; base of the paths, where pictures are searched for
+    char folder[ORL_PATH_SIZE]; // base of the paths, where pictures are searched for
 };
 
 // Reads cameras of any format in the table of known_formats.c, which is recognised by names of files
@@ -55,9 +55,8 @@ enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *pa
                                        struct orl_known_cameras *known) ORL_CHECK_RESULT;
 void orl_known_cameras_finish(struct orl_known_cameras *known);
 // Finds a file that a file of cameras states, maybe with a path of another machine: at `stated`, else at
-// the longest end of it that is there below `folder`. *path: released with free(); NULL: not here.
-enum orl_result orl_known_find(const struct orl_log *log, const char *folder, const char *stated,
-                               char **path) ORL_CHECK_RESULT;
+// the longest end of it that is there below `folder`. False: it is not here.
+bool orl_known_find(const char *folder, const char *stated, char path[ORL_PATH_SIZE]);
 // A table of the formats for a command's help, released with free().
 char *orl_known_formats_text(const struct orl_log *log);
 

@@ -127,16 +127,23 @@ char *orl_known_formats_text(const struct orl_log *log)
     return text;
 }
 
+enum { PATTERN_BYTES = 64 };
+
+// Takes the next of a format's patterns; false: there are no more.
+static bool next_pattern(const char **at, char pattern[PATTERN_BYTES])
+{
+    size_t length = strcspn(*at, " ");
+    snprintf(pattern, PATTERN_BYTES, "%.*s", (int)length, *at);
+    *at += length + strspn(*at + length, " ");
+    return length > 0;
+}
+
 static bool matches(const struct format *format, const char *name)
 {
-    for (const char *at = format->files; *at; at += strspn(at, " ")) {
-        size_t length = strcspn(at, " ");
-        char pattern[64];
-        snprintf(pattern, sizeof pattern, "%.*s", (int)length, at);
-        if (!format->of_folder && fnmatch(orl_path_name(pattern), name, 0) == 0)
+    char pattern[PATTERN_BYTES];
+    for (const char *at = format->files; !format->of_folder && next_pattern(&at, pattern);)
+        if (fnmatch(orl_path_name(pattern), name, 0) == 0)
             return true;
-        at += length;
-    }
     return false;
 }
 
@@ -193,9 +200,7 @@ static enum orl_result read_file(const struct orl_known_source *source,
                                  struct orl_known_cameras *known)
 {
     const char *path = source->path, *name = orl_path_name(path);
-    int length = (int)(name - path);
-    known->folder = orl_format(source->log, "%.*s", length ? length : 1, length ? path : ".");
-    ORL_TRY_MEMORY(known->folder);
+    orl_path_print(known->folder, "", "%.*s", name == path ? 1 : (int)(name - path), name == path ? "." : path);
     if (ends_with(name, ".json") || ends_with(name, ".sfm"))
         return read_json(source, known);
     for (size_t i = 0; i < ORL_COUNT(formats); i++)
@@ -229,22 +234,19 @@ static size_t count_images(const char *dir)
 // The models that a folder is searched for.
 struct models {
     const struct orl_log *log;
-    char *best; // folder of the largest; owned
+    char best[ORL_PATH_SIZE]; // folder of the largest
     size_t most, count;
 };
 
-static enum orl_result try_model(struct models *models, const char *dir)
+static void try_model(struct models *models, const char *dir)
 {
     if (!orl_colmap_has(dir, "cameras.bin") && !orl_colmap_has(dir, "cameras.txt"))
-        return ORL_OK;
+        return;
     size_t images = count_images(dir);
-    models->count++;
-    if (models->best && images <= models->most)
-        return ORL_OK;
-    free(models->best);
-    models->best = orl_strdup(models->log, dir);
-    models->most = images;
-    return models->best ? ORL_OK : ORL_ERR_MEMORY;
+    if (!models->count++ || images > models->most) {
+        orl_path_print(models->best, "", "%s", dir);
+        models->most = images;
+    }
 }
 
 // Looks into the folders in a folder, then into the folder itself.
@@ -252,50 +254,47 @@ static enum orl_result try_models(struct models *models, const char *dir)
 {
     struct orl_names names = {0};
     enum orl_result result = orl_dir_list(models->log, dir, &names);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+    for (size_t i = 0; i < names.count; i++) {
         const char *sub = ORL_PATH(dir, "%s", names.items[i]);
         if (orl_path_is_dir(sub))
-            result = try_model(models, sub);
+            try_model(models, sub);
     }
     orl_names_finish(&names);
-    return result == ORL_OK ? try_model(models, dir) : result;
+    try_model(models, dir);
+    return result;
 }
 
-// Sets *file to the cameras of the largest COLMAP model, or to NULL when there is none. COLMAP makes
+// Sets `file` to the cameras of the largest COLMAP model, or leaves it when there is none. COLMAP makes
 // several when not all photographs could be placed together.
-static enum orl_result find_model(const struct orl_log *log, const char *dir, char **file)
+static enum orl_result find_model(const struct orl_log *log, const char *dir, char file[ORL_PATH_SIZE])
 {
     static const char *const bases[] = {"sparse", "colmap/sparse", "distorted/sparse", "dense", "dense/0",
                                         "."};
     struct models models = {.log = log};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && !models.best && i < ORL_COUNT(bases); i++) {
+    for (size_t i = 0; !models.count && i < ORL_COUNT(bases); i++) {
         const char *base = strcmp(bases[i], ".") == 0 ? dir : ORL_PATH(dir, "%s", bases[i]);
         if (orl_path_is_dir(base))
-            result = try_models(&models, base);
+            ORL_TRY(try_models(&models, base));
     }
-    if (result == ORL_OK && models.count > 1)
+    if (models.count > 1)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu COLMAP models; taking the largest, %s, with %zu "
                  "photographs", dir, models.count, models.best, models.most);
-    bool text = models.best && !orl_colmap_has(models.best, "cameras.bin");
-    *file = result == ORL_OK && models.best
-                ? orl_path_join(log, models.best, text ? "cameras.txt" : "cameras.bin") : NULL;
-    if (result == ORL_OK && models.best && !*file)
-        result = ORL_ERR_MEMORY;
-    free(models.best);
-    return result;
+    if (models.count)
+        orl_path_print(file, models.best, "%s",
+                       orl_colmap_has(models.best, "cameras.bin") ? "cameras.bin" : "cameras.txt");
+    return ORL_OK;
 }
 
-// Sets *file to the path of a pattern's file in a folder, or leaves it. ORL_ERR_DATA: there are several.
+// Sets `file` to the path of a pattern's file in a folder, or leaves it "". ORL_ERR_DATA: there are several.
 static enum orl_result find_pattern(const struct orl_log *log, const char *dir, const char *pattern,
-                                    char **file)
+                                    char file[ORL_PATH_SIZE])
 {
     struct orl_names names = {0};
     if (!strchr(pattern, '*')) {
-        const char *path = ORL_PATH(dir, "%s", pattern);
-        bool there = orl_path_is_file(path) || orl_path_is_dir(path);
-        *file = there ? orl_strdup(log, path) : NULL;
-        return there && !*file ? ORL_ERR_MEMORY : ORL_OK;
+        orl_path_print(file, dir, "%s", pattern);
+        if (!orl_path_is_file(file) && !orl_path_is_dir(file))
+            *file = '\0';
+        return ORL_OK;
     }
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
@@ -303,70 +302,56 @@ static enum orl_result find_pattern(const struct orl_log *log, const char *dir, 
             continue;
         if (*file)
             result = orl_fail(log, ORL_ERR_DATA, "%s: several files of cameras, %s and %s: name "
-                              "one", dir, orl_path_name(*file), names.items[i]);
-        else if (!(*file = orl_path_join(log, dir, names.items[i])))
-            result = ORL_ERR_MEMORY;
+                              "one", dir, orl_path_name(file), names.items[i]);
+        else
+            orl_path_print(file, dir, "%s", names.items[i]);
     }
     orl_names_finish(&names);
-    if (result != ORL_OK) {
-        free(*file);
-        *file = NULL;
-    }
     return result;
 }
 
-// Sets *file to the path of the file of cameras in a folder, or to NULL when there is none.
-static enum orl_result find_file(const struct orl_log *log, const char *dir, char **file,
+// Sets `file` to the path of the file of cameras in a folder, or leaves it "" when there is none.
+static enum orl_result find_file(const struct orl_log *log, const char *dir, char file[ORL_PATH_SIZE],
                                  const struct format **format)
 {
+    char pattern[PATTERN_BYTES];
     enum orl_result result = find_model(log, dir, file);
     for (size_t i = 1; result == ORL_OK && !*file && i < ORL_COUNT(formats); i++) {
         *format = &formats[i];
-        for (const char *at = formats[i].files; result == ORL_OK && !*file && *at;) {
-            size_t length = strcspn(at, " ");
-            char pattern[64];
-            snprintf(pattern, sizeof pattern, "%.*s", (int)length, at);
+        for (const char *at = formats[i].files; result == ORL_OK && !*file && next_pattern(&at, pattern);)
             result = find_pattern(log, dir, pattern, file);
-            at += length + strspn(at + length, " ");
-        }
     }
     return result;
 }
 
-// The folder that pictures are relative to: the nearest one around the file of cameras with images/ in it,
-// else the one that the user named.
-static char *base_of(const struct orl_log *log, const char *dir, const char *file)
+// Cuts the path of the file of cameras to the folder that pictures are relative to: the nearest one around
+// the file with images/ in it, else the one that the user named.
+static void cut_to_base(const char *dir, char path[ORL_PATH_SIZE])
 {
-    char *base = orl_strdup(log, file), *end;
-    while (base && (end = strrchr(base, '/')) && (size_t)(end - base) > strlen(dir)) {
+    for (char *end; (end = strrchr(path, '/')) && (size_t)(end - path) > strlen(dir);) {
         *end = '\0';
-        if (orl_path_is_dir(ORL_PATH(base, "images")))
-            return base;
+        if (orl_path_is_dir(ORL_PATH(path, "images")))
+            return;
     }
-    free(base);
-    return orl_strdup(log, dir);
+    orl_path_print(path, "", "%s", dir);
 }
 
 static enum orl_result read_folder(const struct orl_known_source *source,
                                    struct orl_known_cameras *known)
 {
-    char *file = NULL;
+    char file[ORL_PATH_SIZE] = "";
     const struct orl_log *log = source->log;
     const struct format *format = &formats[0];
-    enum orl_result result = find_file(log, source->path, &file, &format);
-    if (result == ORL_OK && !file)
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no cameras here: oriel import --help lists the "
-                          "files that are searched for", source->path);
+    ORL_TRY(find_file(log, source->path, file, &format));
+    if (!*file)
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no cameras here: oriel import --help lists the "
+                        "files that are searched for", source->path);
     struct orl_known_source found = *source;
     found.path = file;
-    if (result == ORL_OK && format->of_folder)
-        result = read_with(format, source, known);
-    else if (result == ORL_OK)
-        result = read_file(&found, known);
-    free(known->folder);
-    known->folder = base_of(log, source->path, file ? file : source->path);
-    free(file);
-    return result == ORL_OK && !known->folder ? ORL_ERR_MEMORY : result;
+    enum orl_result result = format->of_folder ? read_with(format, source, known) : read_file(&found, known);
+    cut_to_base(source->path, file);
+    memcpy(known->folder, file, sizeof file);
+    return result;
 }
 
 enum orl_result orl_known_cameras_read(const struct orl_log *log, const char *path,

@@ -325,13 +325,10 @@ enum orl_result orl_known_read_transforms(const struct orl_known_source *source,
                                           struct orl_known_cameras *known)
 {
     const char *points = orl_json_text(source->root, "ply_file_path");
-    enum orl_result result = read_frames(source, ORL_KNOWN_TRAIN, known);
-    if (result != ORL_OK || !points)
-        return result;
-    result = orl_known_find(source->log, known->folder, points, &known->points_file);
-    if (result == ORL_OK && !known->points_file && !(known->points_file = orl_strdup(source->log, points)))
-        result = ORL_ERR_MEMORY;
-    return result;
+    ORL_TRY(read_frames(source, ORL_KNOWN_TRAIN, known));
+    if (points && !orl_known_find(known->folder, points, known->points_file))
+        orl_path_print(known->points_file, "", "%s", points);
+    return ORL_OK;
 }
 
 // --- Blender's sets: a folder with a transforms.json for each split ---

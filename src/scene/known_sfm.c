@@ -140,24 +140,24 @@ enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,
 
 // --- Meshroom ---
 
-// The text of an id, which some versions write as a number.
-static char *id_text(const struct orl_log *log, const json_t *entry, const char *key)
+enum { ID_BYTES = 32 };
+
+// An id, which some versions write as a number, for whose text there is room.
+static const char *id_text(const json_t *entry, const char *key, char number[ID_BYTES])
 {
     const json_t *id = json_object_get(entry, key);
-    return json_is_integer(id) ? orl_format(log, "%lld", (long long)json_integer_value(id))
-                               : orl_strdup(log, json_is_string(id) ? json_string_value(id) : "");
+    snprintf(number, ID_BYTES, "%lld", (long long)json_integer_value(id));
+    return json_is_integer(id) ? number : json_is_string(id) ? json_string_value(id) : "";
 }
 
 // The entries of a list by their ids: a new reference, or NULL.
-static json_t *index_by(const struct orl_log *log, const json_t *list, const char *key)
+static json_t *index_by(const json_t *list, const char *key)
 {
     json_t *index = json_object();
     for (size_t i = 0; index && i < json_array_size(list); i++) {
         json_t *entry = json_array_get(list, i);
-        char *id = id_text(log, entry, key);
-        if (!id || json_object_set(index, id, entry) != 0)
+        if (json_object_set(index, id_text(entry, key, (char[ID_BYTES]){""}), entry) != 0)
             json_decref(index), index = NULL;
-        free(id);
     }
     return index;
 }
@@ -259,38 +259,30 @@ static enum orl_result read_view(struct meshroom *m, const json_t *view,
     struct orl_known_camera camera = {.path = orl_json_text(view, "path")};
     double rows[9], centre[3];
     const struct orl_known_source *source = m->source;
-    char *id = id_text(source->log, view, "viewId");
-    char *pose_id = id_text(source->log, view, "poseId"), *lens_id = id_text(source->log, view, "intrinsicId");
-    enum orl_result result = id && pose_id && lens_id ? ORL_OK : ORL_ERR_MEMORY;
-    const json_t *pose = pose_id ? json_object_get(m->poses, pose_id) : NULL;
-    const json_t *lens = lens_id ? json_object_get(m->lenses, lens_id) : NULL;
+    const char *id = id_text(view, "viewId", (char[ID_BYTES]){""});
+    const char *pose_id = id_text(view, "poseId", (char[ID_BYTES]){""});
+    const char *lens_id = id_text(view, "intrinsicId", (char[ID_BYTES]){""});
+    const json_t *pose = json_object_get(m->poses, pose_id), *lens = json_object_get(m->lenses, lens_id);
     const json_t *transform = json_object_get(json_object_get(pose, "pose"), "transform");
-    if (result == ORL_OK && (!pose || !lens)) {
+    if (!pose || !lens) {
         m->without++;
-    } else if (result == ORL_OK) {
-        const char *problem = read_meshroom_lens(source->root, lens, &camera);
-        // The rotation cam_from_world is written column by column: its rows are those of the inverse.
-        if (problem)
-            result = bad(source, "intrinsic", lens_id, problem);
-        else if (!camera.path)
-            result = bad(source, "view", id, "no path");
-        else if (json_object_get(view, "subPoseId"))
-            result = bad(source, "view", id, "rigs of cameras are not supported");
-        else if (!read_texts(json_object_get(transform, "rotation"), 9, rows) ||
-                 !read_texts(json_object_get(transform, "center"), 3, centre) ||
-                 !orl_known_pose_from_camera(rows, centre, &camera.pose))
-            result = bad(source, "pose", pose_id, "no rotation and center");
-        else
-            result = orl_known_add(source->log, source->path, id, &camera, known);
-        if (result == ORL_OK &&
-            json_object_set_new(m->images, id,
-                                json_integer((json_int_t)known->model.image_count - 1)) != 0)
-            result = ORL_ERR_MEMORY;
+        return ORL_OK;
     }
-    free(id);
-    free(pose_id);
-    free(lens_id);
-    return result;
+    const char *problem = read_meshroom_lens(source->root, lens, &camera);
+    if (problem)
+        return bad(source, "intrinsic", lens_id, problem);
+    if (!camera.path)
+        return bad(source, "view", id, "no path");
+    if (json_object_get(view, "subPoseId"))
+        return bad(source, "view", id, "rigs of cameras are not supported");
+    // The rotation cam_from_world is written column by column: its rows are those of the inverse.
+    if (!read_texts(json_object_get(transform, "rotation"), 9, rows) ||
+        !read_texts(json_object_get(transform, "center"), 3, centre) ||
+        !orl_known_pose_from_camera(rows, centre, &camera.pose))
+        return bad(source, "pose", pose_id, "no rotation and center");
+    ORL_TRY(orl_known_add(source->log, source->path, id, &camera, known));
+    json_t *index = json_integer((json_int_t)known->model.image_count - 1);
+    return json_object_set_new(m->images, id, index) == 0 ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 static enum orl_result read_landmark(const struct meshroom *m, const json_t *landmark,
@@ -304,12 +296,11 @@ static enum orl_result read_landmark(const struct meshroom *m, const json_t *lan
     (void)read_texts(json_object_get(landmark, "color"), 3, rgb);
     enum orl_result result = orl_known_add_point(m->source->log, at, rgb, model);
     for (size_t i = 0; result == ORL_OK && model->point_count > before && i < json_array_size(seen); i++) {
-        char *id = id_text(m->source->log, json_array_get(seen, i), "observationId");
-        const json_t *image = id ? json_object_get(m->images, id) : NULL;
+        const char *id = id_text(json_array_get(seen, i), "observationId", (char[ID_BYTES]){""});
+        const json_t *image = json_object_get(m->images, id);
         if (image)
             result = orl_known_add_view(m->source->log, (size_t)json_integer_value(image),
                                         (uint32_t)before, model);
-        free(id);
     }
     return result;
 }
@@ -325,8 +316,8 @@ enum orl_result orl_known_read_meshroom(const struct orl_known_source *source,
     const json_t *structure = json_object_get(source->root, "structure");
     const json_t *views = json_object_get(source->root, "views");
     struct meshroom m = {
-        source, index_by(source->log, json_object_get(source->root, "intrinsics"), "intrinsicId"),
-        index_by(source->log, json_object_get(source->root, "poses"), "poseId"), json_object(), 0};
+        source, index_by(json_object_get(source->root, "intrinsics"), "intrinsicId"),
+        index_by(json_object_get(source->root, "poses"), "poseId"), json_object(), 0};
     enum orl_result result = m.lenses && m.poses && m.images ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < json_array_size(views); i++)
         result = read_view(&m, json_array_get(views, i), known);
