@@ -44,10 +44,9 @@ enum orl_result orl_points_read_from(const struct orl_log *log, const char *path
 // take a byte a component, which is exact to half a degree, and `photographs` is left out.
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
                                  const struct orl_points *points, bool small) ORL_CHECK_RESULT;
-// As before with small false, and adds `origin` to the positions, which are written as doubles unless
-// it is 0.
+// As before, and adds `origin` to the positions, which are written as doubles unless it is 0.
 enum orl_result orl_points_write_from(const struct orl_log *log, const char *path,
-                                      const struct orl_points *points,
+                                      const struct orl_points *points, bool small,
                                       const double origin[3]) ORL_CHECK_RESULT;
 
 #endif

@@ -282,7 +282,7 @@ static enum orl_result run_part(struct orl_job *job, const struct orl_camera_gro
                         .final_db = PART_NAME(step, index, count, ".db")};
     bool taken = false;
     int fd = -1;
-    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, "%s.lock", part.stem), &fd, &taken);
+    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, "%s.lock", part.stem), false, &fd, &taken);
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is at work on it",
                           part.stem);

@@ -94,7 +94,7 @@ static enum orl_result fuse_cluster(struct orl_job *job, const struct orl_cluste
     bool taken = false;
     ORL_TRY(orl_file_make_folder(job->log, out));
     enum orl_result result =
-        orl_lock(job->log, ORL_FUSE_CLUSTER_PATH(job->dir, clusters->size, cluster, ".lock"), &fd, &taken);
+        orl_lock(job->log, ORL_FUSE_CLUSTER_PATH(job->dir, clusters->size, cluster, ".lock"), false, &fd, &taken);
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is fusing this cluster",
                           out);
@@ -141,7 +141,7 @@ static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clust
     for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
         if ((result = fuse_cluster(job, clusters, c)) == ORL_OK)
             result = add_cluster(job, clusters, c, NULL, count);
-    ORL_THEN(result, orl_point_writer_begin(job->log, path, *count, false, &writer));
+    ORL_THEN(result, orl_point_writer_begin(job->log, path, *count, false, NULL, &writer));
     for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
         result = add_cluster(job, clusters, c, &writer, &again);
     ORL_THEN(result, orl_point_writer_end(&writer));

@@ -462,9 +462,7 @@ static enum orl_result open_workspace(struct densifier *d, const struct orl_name
 static enum orl_result lock_workspace(struct densifier *d)
 {
     bool taken;
-    enum orl_result result = d->params.part
-                                 ? orl_lock_shared(d->log, d->workspace, &d->lock_fd, &taken)
-                                 : orl_lock(d->log, d->workspace, &d->lock_fd, &taken);
+    enum orl_result result = orl_lock(d->log, d->workspace, d->params.part, &d->lock_fd, &taken);
     return result == ORL_OK && taken
                ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here",
                           d->workspace)

@@ -52,7 +52,7 @@ static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
 static enum orl_result lock_folder(struct orl_job *job, bool empty)
 {
     bool taken = false;
-    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, ".oriel/lock"), &job->lock_fd, &taken);
+    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, ".oriel/lock"), false, &job->lock_fd, &taken);
     bool begun = orl_job_has(job, ".oriel/stages.json");
     if (result == ORL_OK && taken)
         result = orl_fail(job->log, ORL_ERR_ARGUMENT,
@@ -114,7 +114,7 @@ enum orl_result orl_job_attach(struct orl_job *job, const struct orl_log *log,
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: %s", params->out, strerror(errno));
     if (!orl_job_has(job, ".oriel"))
         return orl_fail(log, ORL_ERR_DATA, "%s: not made by oriel prepare", job->dir);
-    enum orl_result result = orl_lock_shared(log, ORL_PATH(job->dir, ".oriel/lock"), &job->lock_fd, &taken);
+    enum orl_result result = orl_lock(log, ORL_PATH(job->dir, ".oriel/lock"), true, &job->lock_fd, &taken);
     if (result == ORL_OK && taken)
         result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: oriel prepare is at work here", job->dir);
     return result;

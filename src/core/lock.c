@@ -18,8 +18,8 @@ static bool is_there(const char *path, int fd)
            there.st_ino == ours.st_ino;
 }
 
-static enum orl_result lock(const struct orl_log *log, const char *path, int operation, int *fd,
-                            bool *taken)
+enum orl_result orl_lock(const struct orl_log *log, const char *path, bool shared, int *fd,
+                         bool *taken)
 {
     *taken = false;
     for (int i = 0; i < TRIES; i++) {
@@ -29,7 +29,7 @@ static enum orl_result lock(const struct orl_log *log, const char *path, int ope
             *fd = open(path, O_RDONLY | O_CLOEXEC);
         if (*fd < 0)
             return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-        if (flock(*fd, operation | LOCK_NB) != 0) {
+        if (flock(*fd, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
             *taken = errno == EWOULDBLOCK;
             if (!*taken)
                 orl_logf(log, ORL_LOG_WARNING, "%s: cannot be locked (%s): see to it that no other "
@@ -42,16 +42,6 @@ static enum orl_result lock(const struct orl_log *log, const char *path, int ope
         orl_unlock(fd);
     }
     return orl_fail(log, ORL_ERR_IO, "%s: removed again and again", path);
-}
-
-enum orl_result orl_lock(const struct orl_log *log, const char *path, int *fd, bool *taken)
-{
-    return lock(log, path, LOCK_EX, fd, taken);
-}
-
-enum orl_result orl_lock_shared(const struct orl_log *log, const char *path, int *fd, bool *taken)
-{
-    return lock(log, path, LOCK_SH, fd, taken);
 }
 
 void orl_unlock(int *fd)

@@ -34,7 +34,7 @@ struct orl_point_writer {
 };
 // count: of all points. `path` must outlive the writer.
 enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
-                                       bool small,
+                                       bool small, const double *origin,
                                        struct orl_point_writer *writer) ORL_CHECK_RESULT;
 enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
                                      const struct orl_points *points) ORL_CHECK_RESULT;

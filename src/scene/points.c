@@ -107,20 +107,14 @@ static void write_header(FILE *stream, uint64_t count, bool small, bool far)
             small ? "" : "property uchar photographs\n");
 }
 
-static enum orl_result begin(const struct orl_log *log, const char *path, uint64_t count, bool small,
-                             const double *origin, struct orl_point_writer *writer)
+enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
+                                       bool small, const double *origin, struct orl_point_writer *writer)
 {
     *writer = (struct orl_point_writer){.log = log, .path = path, .left = count, .small = small,
                                         .origin = origin};
     ORL_TRY(orl_atomic_open(log, path, &writer->file));
     write_header(writer->file.stream, count, small, origin);
     return ORL_OK;
-}
-
-enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
-                                       bool small, struct orl_point_writer *writer)
-{
-    return begin(log, path, count, small, NULL, writer);
 }
 
 enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
@@ -148,29 +142,23 @@ void orl_point_writer_finish(struct orl_point_writer *writer)
     orl_atomic_abort(&writer->file);
 }
 
-static enum orl_result write_points(const struct orl_log *log, const char *path,
-                                    const struct orl_points *points, bool small,
-                                    const double *origin)
+enum orl_result orl_points_write(const struct orl_log *log, const char *path,
+                                 const struct orl_points *points, bool small)
+{
+    return orl_points_write_from(log, path, points, small, (const double[3]){0});
+}
+
+enum orl_result orl_points_write_from(const struct orl_log *log, const char *path,
+                                      const struct orl_points *points, bool small, const double origin[3])
 {
     struct orl_point_writer writer;
-    enum orl_result result = begin(log, path, points->count, small, origin, &writer);
+    bool far = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
+    enum orl_result result =
+        orl_point_writer_begin(log, path, points->count, small, far ? origin : NULL, &writer);
     ORL_THEN(result, orl_point_writer_add(&writer, points));
     ORL_THEN(result, orl_point_writer_end(&writer));
     orl_point_writer_finish(&writer);
     return result;
-}
-
-enum orl_result orl_points_write(const struct orl_log *log, const char *path,
-                                 const struct orl_points *points, bool small)
-{
-    return write_points(log, path, points, small, NULL);
-}
-
-enum orl_result orl_points_write_from(const struct orl_log *log, const char *path,
-                                      const struct orl_points *points, const double origin[3])
-{
-    bool far = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
-    return write_points(log, path, points, false, far ? origin : NULL);
 }
 
 size_t orl_points_drop_flat(struct orl_points *points)

@@ -413,7 +413,7 @@ static void test_links_and_locks(void **state)
     char *dir = make_workspace(&scene);
     int fd = -1;
     bool taken;
-    assert_int_equal(orl_lock(NULL, dir, &fd, &taken), ORL_OK);
+    assert_int_equal(orl_lock(NULL, dir, false, &fd, &taken), ORL_OK);
     assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_ARGUMENT);
     orl_unlock(&fd);
     assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_OK);
