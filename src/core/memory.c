@@ -40,10 +40,7 @@ enum orl_result orl_grow(const struct orl_log *log, void **array, size_t *capaci
 
 enum orl_result orl_bytes_add(const struct orl_log *log, struct orl_bytes *bytes, const void *data, size_t size)
 {
-    enum orl_result result =
-        orl_grow(log, (void **)&bytes->data, &bytes->capacity, bytes->size + size + 1, 1);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_grow(log, (void **)&bytes->data, &bytes->capacity, bytes->size + size + 1, 1));
     if (size) // no bytes may have no address, which memcpy asks for
         memcpy(bytes->data + bytes->size, data, size);
     bytes->size += size;

@@ -138,8 +138,7 @@ enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_p
 {
     *out = NULL;
     struct orl_gpu *gpu = orl_array(log, 1, sizeof *gpu);
-    if (!gpu)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(gpu);
     enum orl_result result = ORL_OK;
     gpu->log = log;
     gpu->pass = -1;
@@ -197,7 +196,6 @@ void orl_gpu_destroy(struct orl_gpu **handle)
         eglDestroyContext(gpu->display, gpu->context);
         eglTerminate(gpu->display);
     }
-    orl_program_cache_close(gpu);
     free(gpu->shader_dir);
     free(gpu);
     *handle = NULL;

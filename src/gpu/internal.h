@@ -22,7 +22,7 @@ struct orl_gpu {
     EGLContext context;
     struct orl_gpu_caps caps;
     char *shader_dir; // owned; NULL: embedded shaders
-    char *program_cache; // folder, owned; NULL: no cache
+    char program_cache[ORL_PATH_SIZE]; // folder; "": no cache
     size_t cached_progs; // programs taken from the cache
     bool failed;      // sticky: a GL error or a high-severity message
     bool lost;        // for good: the device was reset
@@ -63,7 +63,6 @@ void orl_shader_source_finish(struct shader_source *source);
 void orl_mesa_cache_guard(const struct orl_log *log);
 // Cache of linked programs (program_cache.c). dir: cache_dir of struct orl_gpu_params.
 void orl_program_cache_open(struct orl_gpu *gpu, const char *dir);
-void orl_program_cache_close(struct orl_gpu *gpu);
 // True if `program` was found and is linked.
 bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *source,
                             GLuint program);

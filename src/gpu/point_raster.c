@@ -24,8 +24,7 @@ static enum orl_result make_vertices(struct orl_point_raster *r, const float (*p
                                      const uint8_t (*colors)[3], size_t count)
 {
     struct vertex *vertices = orl_array(r->gpu->log, count, sizeof *vertices);
-    if (!vertices)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(vertices);
     for (size_t i = 0; i < count; i++) {
         memcpy(vertices[i].position, positions[i], sizeof positions[i]);
         memcpy(vertices[i].color, colors[i], sizeof colors[i]);
@@ -45,8 +44,7 @@ enum orl_result orl_point_raster_create(struct orl_gpu *gpu, const float (*posit
     if (count > INT32_MAX)
         return orl_fail(gpu->log, ORL_ERR_UNSUPPORTED, "%zu points are too many", count);
     struct orl_point_raster *r = orl_array(gpu->log, 1, sizeof *r);
-    if (!r)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(r);
     r->gpu = gpu;
     r->count = count;
     struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA8,

@@ -54,7 +54,7 @@ static bool link(struct orl_gpu *gpu, const struct shader_source *source, GLuint
 {
     char message[2048] = "";
     GLint ok = 0;
-    glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, gpu->program_cache != NULL);
+    glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, *gpu->program_cache != '\0');
     glLinkProgram(program);
     glGetProgramiv(program, GL_LINK_STATUS, &ok);
     if (!ok) {

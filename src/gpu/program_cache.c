@@ -24,47 +24,42 @@ struct header {
 };
 static const char magic[8] = "ORLPRG1";
 
-// The cache folder: `asked`, else $XDG_CACHE_HOME/oriel, else ~/.cache/oriel; NULL: no cache.
-static char *cache_dir(const char *asked)
+// Sets the cache folder: `asked`, else $XDG_CACHE_HOME/oriel, else ~/.cache/oriel; "": no cache.
+static void find_cache(const char *asked, char dir[ORL_PATH_SIZE])
 {
     const char *setting = getenv("ORIEL_CACHE"), *xdg = getenv("XDG_CACHE_HOME");
     const char *home = getenv("HOME");
     if (setting && strcmp(setting, "off") == 0)
-        return NULL;
+        return;
     if (asked)
-        return *asked ? orl_strdup(NULL, asked) : NULL;
-    if (xdg && *xdg == '/') // relative paths must be ignored (XDG Base Directory Specification)
-        return orl_path_join(NULL, xdg, "oriel");
-    return home && *home ? orl_path_join(NULL, home, ".cache/oriel") : NULL;
+        orl_path_print(dir, "", "%s", asked);
+    else if (xdg && *xdg == '/') // relative paths must be ignored (XDG Base Directory Specification)
+        orl_path_print(dir, xdg, "oriel");
+    else if (home && *home)
+        orl_path_print(dir, home, ".cache/oriel");
 }
 
 // --- Mesa's own cache ---
 
-// The folder of Mesa's cache, or the nearest folder above it that there is. Owned; NULL: unknown.
-static char *mesa_cache_dir(void)
-{
-    const char *set = getenv("MESA_SHADER_CACHE_DIR"), *xdg = getenv("XDG_CACHE_HOME");
-    const char *home = getenv("HOME");
-    char *dir = set && *set   ? orl_strdup(NULL, set)
-                : xdg && *xdg ? orl_strdup(NULL, xdg)
-                : home        ? orl_path_join(NULL, home, ".cache")
-                              : NULL;
-    for (char *slash; dir && !orl_path_is_dir(dir) && (slash = strrchr(dir, '/')) && slash > dir;)
-        *slash = '\0';
-    return dir;
-}
-
 void orl_mesa_cache_guard(const struct orl_log *log)
 {
     static const unsigned long long min_bytes = 64 << 20;
+    const char *set = getenv("MESA_SHADER_CACHE_DIR"), *xdg = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
     struct statvfs disk;
-    char *dir = mesa_cache_dir();
-    if (dir && statvfs(dir, &disk) == 0 &&
+    char dir[ORL_PATH_SIZE] = "";
+    if ((set && *set) || (xdg && *xdg))
+        orl_path_print(dir, "", "%s", set && *set ? set : xdg);
+    else if (home)
+        orl_path_print(dir, home, ".cache");
+    // The nearest folder above that there is.
+    for (char *slash; !orl_path_is_dir(dir) && (slash = strrchr(dir, '/')) && slash > dir;)
+        *slash = '\0';
+    if (*dir && statvfs(dir, &disk) == 0 &&
         (unsigned long long)disk.f_bavail * disk.f_frsize < min_bytes) {
         orl_logf(log, ORL_LOG_DEBUG, "%s: little room, so that Mesa keeps no programs there", dir);
         setenv("MESA_SHADER_CACHE_DISABLE", "true", 0);
     }
-    free(dir);
 }
 
 // --- Oriel's cache ---
@@ -74,13 +69,7 @@ void orl_program_cache_open(struct orl_gpu *gpu, const char *dir)
     GLint count = 0;
     glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
     if (count > 0)
-        gpu->program_cache = cache_dir(dir);
-}
-
-void orl_program_cache_close(struct orl_gpu *gpu)
-{
-    free(gpu->program_cache);
-    gpu->program_cache = NULL;
+        find_cache(dir, gpu->program_cache);
 }
 
 // Names the entry by a hash of everything that determines the linked program. NULL: out of memory.
@@ -140,7 +129,7 @@ bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *sou
     uint8_t *data = NULL;
     size_t size;
     char path[ORL_PATH_SIZE];
-    bool hit = gpu->program_cache && entry_path(gpu, source, path) && orl_path_is_file(path) &&
+    bool hit = *gpu->program_cache && entry_path(gpu, source, path) && orl_path_is_file(path) &&
                orl_file_read(NULL, path, BINARY_MAX_BYTES, &data, &size) == ORL_OK &&
                load_binary(data, size, program);
     gpu->cached_progs += hit;
@@ -164,7 +153,7 @@ void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *so
                              GLuint program)
 {
     GLint length = 0;
-    if (!gpu->program_cache)
+    if (!*gpu->program_cache)
         return;
     glGetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &length);
     if (length <= 0 || length > BINARY_MAX_BYTES - (GLint)sizeof(struct header))

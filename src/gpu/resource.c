@@ -11,8 +11,7 @@ enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const 
 {
     *out = NULL;
     struct orl_buf *buf = orl_array(gpu->log, 1, sizeof *buf);
-    if (!buf)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(buf);
     *buf = (struct orl_buf){.size = size ? size : 4, .owner = owner, .tag = tag};
     glCreateBuffers(1, &buf->id);
     glNamedBufferStorage(buf->id, (GLsizeiptr)buf->size, size ? data : NULL, 0);
@@ -159,8 +158,7 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
         return orl_fail(gpu->log, ORL_ERR_GPU, "%s: this device has no textures of %dx%d, "
                         "%d layers", params->tag, params->width, params->height, params->layers);
     struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
-    if (!tex)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(tex);
     tex->params = *params;
     if (tex->params.levels < 1)
         tex->params.levels = 1;
@@ -244,8 +242,7 @@ enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *b
 {
     *out = NULL;
     struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
-    if (!tex)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(tex);
     size_t texels = buf->size / texel_bytes(format);
     tex->params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1,
                                           .format = format, .owner = buf->owner,

@@ -69,12 +69,10 @@ static enum orl_result expand(struct orl_gpu *gpu, struct shader_source *source,
             return ORL_OK; // already included
     if (depth > INCLUDE_DEPTH_MAX || source->file_count == ORL_COUNT(source->files))
         return orl_fail(gpu->log, ORL_ERR_FORMAT, "shader %s: includes too deep or too many", file);
-    enum orl_result result = read_text(gpu, file, &name, &text, &owned);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(read_text(gpu, file, &name, &text, &owned));
     size_t index = source->file_count++;
     source->files[index] = name;
-    result = append_line_mark(gpu, source, 1, index);
+    enum orl_result result = append_line_mark(gpu, source, 1, index);
     int number = 1;
     for (const char *line = text; result == ORL_OK && *line; number++) {
         const char *end = strchr(line, '\n');

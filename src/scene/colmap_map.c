@@ -34,32 +34,24 @@ enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
     uint8_t *data = NULL;
     size_t size;
     ORL_TRY(orl_file_read(log, path, SIZE_MAX / 2, &data, &size));
-    unsigned long dims[3];
+    unsigned long dims[3] = {0};
     size_t header = parse_header(data, size, dims);
+    bool sound = header && dims[0] >= 1 && dims[1] >= 1 && dims[2] >= 1 && dims[0] <= ORL_IMAGE_MAX_SIDE &&
+                 dims[1] <= ORL_IMAGE_MAX_SIDE && dims[2] <= 4;
+    size_t pixels = sound ? dims[0] * dims[1] : 0, expected = pixels * dims[2] * sizeof(float); // at most 2^36
     enum orl_result result = ORL_OK;
-    if (!header || dims[0] < 1 || dims[1] < 1 || dims[2] < 1 || dims[0] > ORL_IMAGE_MAX_SIDE ||
-        dims[1] > ORL_IMAGE_MAX_SIDE || dims[2] > 4) {
+    if (!sound)
         result = orl_fail(log, ORL_ERR_FORMAT,
                           "%s: byte 0: not the WIDTH&HEIGHT&CHANNELS& of a COLMAP map", path);
-        goto end;
-    }
-    size_t pixels = dims[0] * dims[1];
-    size_t expected = pixels * dims[2] * sizeof(float); // at most 2^36
-    if (size - header != expected) {
+    else if (size - header != expected)
         result = orl_fail(log, ORL_ERR_FORMAT,
                           "%s: byte %zu: %lux%lux%lu values need %zu bytes, but %zu follow", path,
                           header, dims[0], dims[1], dims[2], expected, size - header);
-        goto end;
-    }
-    result = orl_image_init(log, image, (int)dims[0], (int)dims[1], (int)dims[2], ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        goto end;
-    for (size_t c = 0; c < dims[2]; c++) {
-        const uint8_t *plane = data + header + c * pixels * sizeof(float);
-        for (size_t i = 0; i < pixels; i++)
-            memcpy(&image->f32[i * dims[2] + c], plane + i * sizeof(float), sizeof(float));
-    }
-end:
+    ORL_THEN(result, orl_image_init(log, image, (int)dims[0], (int)dims[1], (int)dims[2], ORL_PIXEL_F32));
+    const uint8_t *sample = data + header;
+    for (size_t c = 0; result == ORL_OK && c < dims[2]; c++)
+        for (size_t i = 0; i < pixels; i++, sample += sizeof(float))
+            memcpy(&image->f32[i * dims[2] + c], sample, sizeof(float));
     free(data);
     return result;
 }

@@ -104,8 +104,7 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
     const struct orl_points *points = &scene->points;
     s->position = orl_array(log, POINTS_MAX, sizeof *s->position);
     s->normal = orl_array(log, POINTS_MAX, sizeof *s->normal);
-    if (!s->position || !s->normal)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(s->position && s->normal);
     s->tolerance = TOLERANCE * scene->photo_distance;
     take_photos(scene, s);
     find_along(s);

@@ -33,8 +33,7 @@ static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_e
     mesh->position = orl_array(ply->log, count, sizeof *mesh->position);
     mesh->normal = normals ? orl_array(ply->log, count, sizeof *mesh->normal) : NULL;
     mesh->color = colors ? orl_array(ply->log, count, sizeof *mesh->color) : NULL;
-    if (!mesh->position || (normals && !mesh->normal) || (colors && !mesh->color))
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(mesh->position && (mesh->normal || !normals) && (mesh->color || !colors));
     mesh->vertex_count = count;
     for (size_t i = 0; i < count; i++) {
         ORL_TRY(orl_ply_record(ply, element, record, -1, NULL));

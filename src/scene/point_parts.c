@@ -240,8 +240,8 @@ static enum orl_result lay_out(struct maker *m)
         struct run *run = i % 2 ? &part->around : &part->own;
         run->first = first;
         first += run->count;
-        if (!(run->buffer = orl_array(parts->log, BUFFER_RECORDS, sizeof *run->buffer)))
-            return ORL_ERR_MEMORY;
+        run->buffer = orl_array(parts->log, BUFFER_RECORDS, sizeof *run->buffer);
+        ORL_TRY_MEMORY(run->buffer);
     }
     return ORL_OK;
 }

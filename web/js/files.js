@@ -101,11 +101,6 @@ export class Files {
         return JSON.parse(new TextDecoder().decode(await this.get(path)));
     }
 
-    async text(path)
-    {
-        return new TextDecoder().decode(await this.get(path));
-    }
-
     // An address that <img> takes.
     async address(path)
     {
