@@ -74,7 +74,7 @@ vec4 photo_complete(vec4 texel, vec2 pixel, float slot, float lod)
 #ifdef CHROMA
     vec2 size = 2.0 * vec2(textureSize(photo_chroma, 0).xy);
     vec2 chroma = textureLod(photo_chroma, vec3(pixel / size, slot), lod).rg - 128.0 / 255.0;
-    // The inverse of src/gpu/rgtc.c (ITU-R BT.601).
+    // The inverse of src/gpu/compress.c (ITU-R BT.601).
     vec3 color = texel.r + vec3(1.402 * chroma.g, -0.344136 * chroma.r - 0.714136 * chroma.g,
                                 1.772 * chroma.r);
     return vec4(srgb_decode(clamp(color, 0.0, 1.0)), texel.a);

@@ -2,9 +2,8 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "gpu/bc1.h"
+#include "gpu/compress.h"
 #include "gpu/internal.h"
-#include "gpu/rgtc.h"
 
 enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
                                size_t size, const void *data, struct orl_buf **out)

@@ -1,12 +1,35 @@
-#include "gpu/rgtc.h"
+#include "gpu/compress.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 #include <stb_dxt.h>
 
-#include "gpu/texel_block.h"
+enum { TEXELS = 16, BC1_BYTES = 8, LUMA_BYTES = 8, CHROMA_BYTES = 16 };
 
-enum { LUMA_BYTES = 8, CHROMA_BYTES = 16 };
+// Copies the block at column x and row y of an RGBA8 picture, row by row.
+static void copy_block(const uint8_t *rgba, int width, int height, int x, int y, uint8_t texels[TEXELS][4])
+{
+    for (int i = 0; i < TEXELS; i++) {
+        int u = x + i % 4 < width ? x + i % 4 : width - 1;
+        int v = y + i / 4 < height ? y + i / 4 : height - 1;
+        memcpy(texels[i], &rgba[4 * ((size_t)v * (size_t)width + (size_t)u)], 4);
+    }
+}
+
+void orl_bc1_encode(const uint8_t *rgba, int width, int height, uint8_t *blocks)
+{
+    uint8_t texels[TEXELS][4];
+    for (int y = 0; y < height; y += 4)
+        for (int x = 0; x < width; x += 4, blocks += BC1_BYTES) {
+            copy_block(rgba, width, height, x, y, texels);
+            // Different alphas would be different colours to the encoder.
+            for (int i = 0; i < TEXELS; i++)
+                texels[i][3] = 255;
+            stb_compress_dxt_block(blocks, texels[0], 0, STB_DXT_HIGHQUAL);
+        }
+}
 
 static float luma(const uint8_t rgba[4])
 {
@@ -20,11 +43,11 @@ static uint8_t byte_of(float value)
 
 void orl_rgtc_encode_luma(const uint8_t *rgba, int width, int height, uint8_t *blocks)
 {
-    uint8_t texels[ORL_BLOCK_TEXELS][4], values[ORL_BLOCK_TEXELS];
+    uint8_t texels[TEXELS][4], values[TEXELS];
     for (int y = 0; y < height; y += 4)
         for (int x = 0; x < width; x += 4, blocks += LUMA_BYTES) {
-            orl_texel_block(rgba, width, height, x, y, texels);
-            for (int i = 0; i < ORL_BLOCK_TEXELS; i++)
+            copy_block(rgba, width, height, x, y, texels);
+            for (int i = 0; i < TEXELS; i++)
                 values[i] = byte_of(luma(texels[i]));
             stb_compress_bc4_block(blocks, values);
         }
@@ -54,10 +77,10 @@ static void chroma_at(const uint8_t *rgba, int width, int height, int x, int y, 
 void orl_rgtc_encode_chroma(const uint8_t *rgba, int width, int height, int half_width,
                             int half_height, uint8_t *blocks)
 {
-    uint8_t texels[ORL_BLOCK_TEXELS][2];
+    uint8_t texels[TEXELS][2];
     for (int y = 0; y < half_height; y += 4)
         for (int x = 0; x < half_width; x += 4, blocks += CHROMA_BYTES) {
-            for (int i = 0; i < ORL_BLOCK_TEXELS; i++)
+            for (int i = 0; i < TEXELS; i++)
                 chroma_at(rgba, width, height, least(x + i % 4, half_width - 1),
                           least(y + i / 4, half_height - 1), texels[i]);
             stb_compress_bc5_block(blocks, texels[0]);
