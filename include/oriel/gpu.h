@@ -122,7 +122,7 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
                         struct orl_tex *to, int layer);
 // Compresses all levels of `to` from `from`, 8 bits per channel, into a layer of the array `to`,
 // which must have the same size. RGTC1 gets the luma; RGTC2 the chroma, and has half the size,
-// rounded up. Oriel encodes them (bc1.h, rgtc.h). Alpha is lost. Waits for the device.
+// rounded up. Oriel encodes them (gpu/compress.h). Alpha is lost. Waits for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;
 // Sets every channel of every layer of one level to 0.

@@ -126,7 +126,7 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
         orl_logf(d->log, ORL_LOG_WARNING, "%s: no mask; the whole photograph is used", path);
         return ORL_OK;
     }
-    ORL_TRY(orl_mask_read(d->log, path, &job->mask));
+    ORL_TRY(orl_mask_read(d->log, path, false, &job->mask));
     if (job->mask.width != picture->width || job->mask.height != picture->height)
         return orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,
                         job->mask.width, job->mask.height, picture->width, picture->height);

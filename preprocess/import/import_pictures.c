@@ -163,7 +163,7 @@ static enum orl_result take_alpha(const struct import_job *job, struct import_vi
                                   struct orl_image *mask)
 {
     struct orl_image rgba = {0};
-    enum orl_result result = orl_mask_read_alpha(job->log, path, mask);
+    enum orl_result result = orl_mask_read(job->log, path, true, mask);
     if (result != ORL_OK || !mask->u8)
         return result;
     result = orl_picture_read_rgba(job->log, path, &rgba);
@@ -188,7 +188,7 @@ static enum orl_result make_mask(const struct import_job *job, const char *path,
     enum orl_result result;
     switch (job->params->silhouettes) {
     case ORL_SILHOUETTES_GIVEN:
-        return orl_mask_read(job->log, mask_path, mask);
+        return orl_mask_read(job->log, mask_path, false, mask);
     case ORL_SILHOUETTES_DARK:
         result = orl_silhouette_dark(job->log, picture, job->params->dark_threshold, &threshold,
                                      mask);
@@ -236,7 +236,7 @@ static enum orl_result import_picture(struct import_job *job, struct import_view
         result = take_alpha(job, view, path, &picture, &mask);
     if (result == ORL_OK && stated && mask_path) {
         orl_image_finish(&mask);
-        result = orl_mask_read(job->log, mask_path, &mask);
+        result = orl_mask_read(job->log, mask_path, false, &mask);
     }
     ORL_THEN(result, write_photo(job, view, frame, path, &picture));
     // The scene's own pictures, shown before a frame is chosen, are those of the first frame.

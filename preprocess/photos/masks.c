@@ -89,7 +89,7 @@ static enum orl_result copy_mask(const struct orl_job *job, struct orl_source *s
     source->mask = orl_strdup(job->log, ORL_PATH(job->dir, ".oriel/masks/%016" PRIx64 ".png", source->mask_hash));
     ORL_TRY_MEMORY(source->mask);
     bool made = orl_path_is_file(source->mask);
-    enum orl_result result = orl_mask_read(job->log, made ? source->mask : path, &mask);
+    enum orl_result result = orl_mask_read(job->log, made ? source->mask : path, false, &mask);
     *empty = result == ORL_OK && !orl_mask_count(&mask);
     if (result == ORL_OK && !made)
         result = orl_png_write(job->log, source->mask, &mask);
@@ -152,7 +152,7 @@ static enum orl_result mention_alpha(const struct orl_job *job)
         i++;
     if (i == job->source_count)
         return ORL_OK;
-    enum orl_result result = orl_mask_read_alpha(job->log, job->sources[i].path, &mask);
+    enum orl_result result = orl_mask_read(job->log, job->sources[i].path, true, &mask);
     if (mask.data)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: its alpha is not used: give the folder of the photographs as "
                  "--masks, too, if it is their mask", job->sources[i].given);

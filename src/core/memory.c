@@ -103,23 +103,15 @@ char *orl_strdup(const struct orl_log *log, const char *text)
     return copy;
 }
 
-char *orl_vformat(const struct orl_log *log, const char *format, va_list args)
-{
-    va_list again;
-    va_copy(again, args);
-    int length = vsnprintf(NULL, 0, format, args);
-    char *text = length < 0 ? NULL : orl_array(log, (size_t)length + 1, 1);
-    if (text)
-        vsnprintf(text, (size_t)length + 1, format, again);
-    va_end(again);
-    return text;
-}
-
 char *orl_format(const struct orl_log *log, const char *format, ...)
 {
+    char *text = NULL;
     va_list args;
     va_start(args, format);
-    char *text = orl_vformat(log, format, args);
+    if (vasprintf(&text, format, args) < 0) {
+        orl_logf(log, ORL_LOG_ERROR, "no memory for a text");
+        text = NULL;
+    }
     va_end(args);
     return text;
 }

@@ -2,8 +2,6 @@
 #ifndef ORL_CORE_MEMORY_H
 #define ORL_CORE_MEMORY_H
 
-#include <stdarg.h>
-
 #include "oriel/log.h"
 
 // Allocates a zeroed array of count * size bytes, released with free(). NULL, logged, when
@@ -43,6 +41,5 @@ uint64_t orl_address_space_left(void);
 // These return new strings, released with free(); NULL, logged, when memory runs out.
 char *orl_strdup(const struct orl_log *log, const char *text);
 char *orl_format(const struct orl_log *log, const char *format, ...) ORL_PRINTF(2, 3);
-char *orl_vformat(const struct orl_log *log, const char *format, va_list args) ORL_PRINTF(2, 0);
 
 #endif

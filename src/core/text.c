@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-size_t orl_utf8_length(const char *text)
+// Length in bytes of the UTF-8 character at the start of `text`; 0 when there is none.
+static size_t utf8_length(const char *text)
 {
     const unsigned char *c = (const unsigned char *)text;
     if (c[0] < 0x80)
@@ -23,7 +24,7 @@ size_t orl_utf8_length(const char *text)
 bool orl_utf8_valid(const char *text)
 {
     for (size_t length; *text; text += length)
-        if (!(length = orl_utf8_length(text)))
+        if (!(length = utf8_length(text)))
             return false;
     return true;
 }
@@ -50,7 +51,7 @@ void orl_text_escape(const char *text, char *out, size_t size)
     size_t used = 0;
     while (*text) {
         const unsigned char *c = (const unsigned char *)text;
-        size_t length = orl_utf8_length(text);
+        size_t length = utf8_length(text);
         char coded[5];
         const char *from = text;
         bool escaped = length == 0 || controls_terminal(c);

@@ -4,8 +4,6 @@
 
 #include "oriel/common.h"
 
-// Length in bytes of the UTF-8 character at the start of `text`; 0 when there is none.
-size_t orl_utf8_length(const char *text);
 bool orl_utf8_valid(const char *text);
 
 // Length of the mark that some editors put ahead of UTF-8 text: 3 or 0.

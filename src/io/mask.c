@@ -53,8 +53,8 @@ static void mark(const struct orl_image *rgba, bool alpha, struct orl_image *mas
     }
 }
 
-static enum orl_result read_mask(const struct orl_log *log, const char *path, bool alpha_only,
-                                 struct orl_image *mask)
+enum orl_result orl_mask_read(const struct orl_log *log, const char *path, bool alpha_only,
+                              struct orl_image *mask)
 {
     struct orl_image rgba = {0};
     memset(mask, 0, sizeof *mask);
@@ -66,17 +66,6 @@ static enum orl_result read_mask(const struct orl_log *log, const char *path, bo
         mark(&rgba, alpha, mask);
     orl_image_finish(&rgba);
     return result;
-}
-
-enum orl_result orl_mask_read(const struct orl_log *log, const char *path, struct orl_image *mask)
-{
-    return read_mask(log, path, false, mask);
-}
-
-enum orl_result orl_mask_read_alpha(const struct orl_log *log, const char *path,
-                                    struct orl_image *mask)
-{
-    return read_mask(log, path, true, mask);
 }
 
 size_t orl_mask_count(const struct orl_image *mask)

@@ -11,12 +11,10 @@
 //   edges and the noise of JPEG count as the nearer side. Where that brightest is below 32 the values
 //   are labels (0 and 1, numbers of classes), and all but 0 count.
 // - A clearly coloured pixel counts, however dark, since colours tell classes apart.
-enum orl_result orl_mask_read(const struct orl_log *log, const char *path,
+// With alpha_only the colours are those of a photograph: mask->data stays NULL where the alpha is missing
+// or the same everywhere.
+enum orl_result orl_mask_read(const struct orl_log *log, const char *path, bool alpha_only,
                               struct orl_image *mask) ORL_CHECK_RESULT;
-// Reads the mask in the alpha of a photograph, as orl_mask_read does. mask->data stays NULL where the
-// alpha is missing or the same everywhere.
-enum orl_result orl_mask_read_alpha(const struct orl_log *log, const char *path,
-                                    struct orl_image *mask) ORL_CHECK_RESULT;
 // Number of the mask's pixels that count.
 size_t orl_mask_count(const struct orl_image *mask);
 

@@ -185,13 +185,6 @@ bool orl_known_json_number(const json_t *object, const char *key, double *value)
     return (text ? end != text && !*end : json_is_number(item)) && isfinite(*value);
 }
 
-bool orl_known_pose_from_camera(const double rows[9], const double centre[3], struct orl_pose *pose)
-{
-    double axes[3][3];
-    memcpy(axes, rows, sizeof axes);
-    return orl_pose_from_axes(axes, centre, pose);
-}
-
 void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object)
 {
     enum { MOST = 20 };

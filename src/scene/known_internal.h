@@ -87,7 +87,5 @@ void orl_known_say_unused_of(const struct orl_known_source *source, const json_t
 
 // The number of a key, which may be written as a string. False when it is missing or not finite.
 bool orl_known_json_number(const json_t *object, const char *key, double *value);
-// Sets the pose of a camera with COLMAP's axes from its row-major rotation world_from_cam and centre.
-bool orl_known_pose_from_camera(const double rows[9], const double centre[3], struct orl_pose *pose);
 
 #endif

@@ -53,15 +53,15 @@ static enum orl_result read_pose(const struct orl_known_source *source, const do
                                  const char *path, struct orl_known_cameras *known)
 {
     struct orl_known_camera camera = {.path = path};
-    double rows[9], centre[3], height = numbers[4], width = numbers[9], focal = numbers[14];
+    double axes[3][3], centre[3], height = numbers[4], width = numbers[9], focal = numbers[14];
     for (int i = 0; i < 3; i++) {
-        rows[3 * i] = numbers[5 * i + 1];      // right
-        rows[3 * i + 1] = numbers[5 * i];      // down
-        rows[3 * i + 2] = -numbers[5 * i + 2]; // forward
+        axes[i][0] = numbers[5 * i + 1];  // right
+        axes[i][1] = numbers[5 * i];      // down
+        axes[i][2] = -numbers[5 * i + 2]; // forward
         centre[i] = numbers[5 * i + 3];
     }
     if (!(width >= 1 && width <= ORL_IMAGE_MAX_SIDE && height >= 1 && height <= ORL_IMAGE_MAX_SIDE) ||
-        !orl_known_pose_from_camera(rows, centre, &camera.pose))
+        !orl_pose_from_axes(axes, centre, &camera.pose))
         return orl_fail(source->log, ORL_ERR_FORMAT, "%s: picture %s: no size, or its pose is not a rotation "
                         "and a place", source->path, path);
     camera.width = (int)width;

@@ -257,7 +257,7 @@ static enum orl_result read_view(struct meshroom *m, const json_t *view,
                                  struct orl_known_cameras *known)
 {
     struct orl_known_camera camera = {.path = orl_json_text(view, "path")};
-    double rows[9], centre[3];
+    double axes[3][3], centre[3];
     const struct orl_known_source *source = m->source;
     const char *id = id_text(view, "viewId", (char[ID_BYTES]){""});
     const char *pose_id = id_text(view, "poseId", (char[ID_BYTES]){""});
@@ -276,9 +276,9 @@ static enum orl_result read_view(struct meshroom *m, const json_t *view,
     if (json_object_get(view, "subPoseId"))
         return bad(source, "view", id, "rigs of cameras are not supported");
     // The rotation cam_from_world is written column by column: its rows are those of the inverse.
-    if (!read_texts(json_object_get(transform, "rotation"), 9, rows) ||
+    if (!read_texts(json_object_get(transform, "rotation"), 9, &axes[0][0]) ||
         !read_texts(json_object_get(transform, "center"), 3, centre) ||
-        !orl_known_pose_from_camera(rows, centre, &camera.pose))
+        !orl_pose_from_axes(axes, centre, &camera.pose))
         return bad(source, "pose", pose_id, "no rotation and center");
     ORL_TRY(orl_known_add(source->log, source->path, id, &camera, known));
     json_t *index = json_integer((json_int_t)known->model.image_count - 1);

@@ -242,20 +242,20 @@ static const char *set_lens(const struct sensor *s, struct orl_known_camera *cam
 static bool set_pose(const struct reader *r, const struct camera *from, struct orl_known_camera *camera)
 {
     const struct component *c = &r->chunk;
-    double rows[9], centre[3];
+    double axes[3][3], centre[3];
     for (size_t i = 0; i < r->component_count; i++)
         if (strcmp(r->components[i].id, from->component) == 0)
             c = &r->components[i];
     for (int i = 0; i < 3; i++) {
         centre[i] = c->t[i];
         for (int j = 0; j < 3; j++) {
-            rows[3 * i + j] = 0;
+            axes[i][j] = 0;
             for (int k = 0; k < 3; k++)
-                rows[3 * i + j] += c->r[3 * i + k] * from->matrix[4 * k + j];
+                axes[i][j] += c->r[3 * i + k] * from->matrix[4 * k + j];
             centre[i] += c->scale * c->r[3 * i + j] * from->matrix[4 * j + 3];
         }
     }
-    return orl_known_pose_from_camera(rows, centre, &camera->pose);
+    return orl_pose_from_axes(axes, centre, &camera->pose);
 }
 
 static enum orl_result add_cameras(const struct reader *r, struct orl_known_cameras *known)

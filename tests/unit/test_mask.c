@@ -48,7 +48,7 @@ static void write_png(int depth, int color, uint8_t *row, const png_color palett
 static void expect(const char *want)
 {
     struct orl_image mask;
-    assert_int_equal(orl_mask_read(NULL, file, &mask), ORL_OK);
+    assert_int_equal(orl_mask_read(NULL, file, false, &mask), ORL_OK);
     assert_int_equal(mask.channels, 1);
     size_t count = 0;
     for (int i = 0; i < 4; i++) {
@@ -117,11 +117,11 @@ static void reads_the_alpha_of_photographs(void **state)
     struct orl_image mask;
     write_png(8, PNG_COLOR_TYPE_RGBA,
               (uint8_t[]){9, 8, 7, 0, 9, 8, 7, 255, 0, 0, 0, 255, 255, 255, 255, 1}, NULL);
-    assert_int_equal(orl_mask_read_alpha(NULL, file, &mask), ORL_OK);
+    assert_int_equal(orl_mask_read(NULL, file, true, &mask), ORL_OK);
     assert_memory_equal(mask.u8, ((uint8_t[]){0, 255, 255, 0}), 4);
     orl_image_finish(&mask);
     write_png(8, PNG_COLOR_TYPE_GRAY, (uint8_t[]){0, 127, 128, 255}, NULL);
-    assert_int_equal(orl_mask_read_alpha(NULL, file, &mask), ORL_OK);
+    assert_int_equal(orl_mask_read(NULL, file, true, &mask), ORL_OK);
     assert_null(mask.data);
 }
 
@@ -134,7 +134,7 @@ static void takes_the_noise_of_jpeg(void **state)
     for (int i = 0; i < SIDE * SIDE; i++)
         image.u8[i] = hypot(i % SIDE - 15.5, i / SIDE - 15.5) < 10 ? 255 : 0;
     assert_int_equal(orl_jpeg_write(NULL, file, &image, 75, NULL), ORL_OK);
-    assert_int_equal(orl_mask_read(NULL, file, &mask), ORL_OK);
+    assert_int_equal(orl_mask_read(NULL, file, false, &mask), ORL_OK);
     int wrong = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         wrong += mask.u8[i] != image.u8[i];

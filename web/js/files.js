@@ -116,8 +116,6 @@ export class Files {
         this.next();
     }
 
-    get busy() { return this.running + this.waiting.length > 0; }
-
     next()
     {
         while (this.running < AT_ONCE && this.waiting.length) {
