@@ -10,29 +10,19 @@
 // The photographs that are not held out.
 struct viewers {
     struct orl_view *views;
-    double (*centres)[3];
     size_t count;
 };
-
-static void viewers_finish(struct viewers *viewers)
-{
-    free(viewers->views);
-    free(viewers->centres);
-}
 
 static enum orl_result find_viewers(struct orl_job *job, struct viewers *viewers)
 {
     const struct orl_colmap_model *model;
     ORL_TRY(orl_job_sparse(job, &model));
     viewers->views = orl_array(job->log, model->image_count, sizeof *viewers->views);
-    viewers->centres = orl_array(job->log, model->image_count, sizeof *viewers->centres);
-    ORL_TRY_MEMORY(viewers->views && viewers->centres);
+    ORL_TRY_MEMORY(viewers->views);
     for (size_t i = 0; i < model->image_count; i++) {
         const struct orl_colmap_image *image = &model->images[i];
-        if (orl_job_find(job, image->name)->test)
-            continue;
-        viewers->views[viewers->count] = orl_colmap_image_view(model, image);
-        orl_pose_centre(&image->cam_from_world, viewers->centres[viewers->count++]);
+        if (!orl_job_find(job, image->name)->test)
+            viewers->views[viewers->count++] = orl_colmap_image_view(model, image);
     }
     return ORL_OK;
 }
@@ -66,8 +56,8 @@ static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_p
     const struct orl_radii_limits limits = orl_radii_limits_of(params);
     struct orl_points points = {0};
     enum orl_result result = orl_points_read(job->log, in, &points);
-    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, params,
-                                          (const double (*)[3])viewers->centres, viewers->count, &points));
+    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, params, viewers->views, viewers->count,
+                                          &points));
     ORL_THEN(result, orl_points_limit_radii(job->log, &limits, viewers->views, viewers->count, &points));
     ORL_THEN(result, orl_points_write(job->log, ORL_PATH(job->dir, "points.ply"), &points, false));
     if (result == ORL_OK)
@@ -123,6 +113,6 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
         (double)limits.isolated_px));
     json_object_set_new(record, "isolated", json_integer((json_int_t)(fused - left)));
     json_object_set_new(record, "points", json_integer((json_int_t)left));
-    viewers_finish(&viewers);
+    free(viewers.views);
     return result;
 }

@@ -87,21 +87,15 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
         known += points->radius[i] > 0;
     if (known)
         return ORL_OK;
-    double (*eyes)[3] = orl_array(job->log, job->view_count, sizeof *eyes);
     struct orl_view *views = orl_array(job->log, job->view_count, sizeof *views);
-    enum orl_result result = eyes && views ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
-        if (job->views[i].test)
-            continue;
-        views[count] = view_of(job, i);
-        orl_pose_centre(&views[count].cam_from_world, eyes[count]);
-        count++;
-    }
-    ORL_THEN(result, orl_points_drop_in_free_space(job->log, job->progress, views, count, points));
-    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, &radii, (const double (*)[3])eyes,
-                                          count, points));
+    ORL_TRY_MEMORY(views);
+    for (size_t i = 0; i < job->view_count; i++)
+        if (!job->views[i].test)
+            views[count++] = view_of(job, i);
+    enum orl_result result =
+        orl_points_drop_in_free_space(job->log, job->progress, views, count, points);
+    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, &radii, views, count, points));
     ORL_THEN(result, orl_points_limit_radii(job->log, &limits, views, count, points));
-    free(eyes);
     free(views);
     return result;
 }

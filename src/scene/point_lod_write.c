@@ -17,7 +17,6 @@ struct writer {
     const struct orl_lod_params *params;
     const char *path;
     struct point_parts parts;
-    double (*viewers)[3];
     struct orl_disc_sizes sizes;
     struct orl_radii_limits limits;
     struct orl_atomic_file out;
@@ -47,9 +46,8 @@ static enum orl_result set_radii(struct writer *w, size_t part)
     float *scales = NULL;
     enum orl_result result = orl_point_parts_read(&w->parts, part, true, &points, &scales);
     size_t own = orl_point_parts_own(&w->parts, part);
-    ORL_THEN(result, orl_points_set_some_radii(w->log, NULL, &params->radii,
-                                               (const double (*)[3])w->viewers, params->view_count, own,
-                                               &points));
+    ORL_THEN(result, orl_points_set_some_radii(w->log, NULL, &params->radii, params->views,
+                                               params->view_count, own, &points));
     if (result == ORL_OK) {
         points.count = own;
         orl_disc_sizes_add(&w->sizes, params->views, params->view_count, &points, scales);
@@ -66,10 +64,7 @@ static enum orl_result find_radii(struct writer *w)
     const struct orl_radii_limits limits = orl_radii_limits_of(&params->radii);
     if (!w->parts.flat)
         return ORL_OK;
-    w->viewers = orl_array(w->log, params->view_count, sizeof *w->viewers);
-    ORL_TRY(w->viewers ? orl_disc_sizes_init(w->log, &w->sizes) : ORL_ERR_MEMORY);
-    for (size_t i = 0; i < params->view_count; i++)
-        orl_pose_centre(&params->views[i].cam_from_world, w->viewers[i]);
+    ORL_TRY(orl_disc_sizes_init(w->log, &w->sizes));
     ORL_TRY(for_parts(w, "radii", set_radii));
     w->limits = orl_radii_limits_widened(&limits, &w->sizes);
     return ORL_OK;
@@ -145,7 +140,6 @@ static void finish(struct writer *w)
     orl_atomic_abort(&w->out);
     orl_point_parts_finish(&w->parts);
     orl_disc_sizes_finish(&w->sizes);
-    free(w->viewers);
 }
 
 enum orl_result orl_lod_write(const struct orl_log *log, const struct orl_progress *progress,

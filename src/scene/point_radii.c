@@ -13,7 +13,7 @@ enum { CHUNK = 1 << 15 }; // points between two reports of progress and checks f
 struct search {
     const struct orl_log *log;
     struct orl_points *points;
-    const double (*viewers)[3];
+    double (*viewers)[3]; // places of the cameras
     size_t viewer_count;
     int neighbours; // excluding the point itself
     float overlap;
@@ -146,18 +146,18 @@ static enum orl_result fill_radii(struct search *s, size_t count)
 enum orl_result orl_points_set_radii(const struct orl_log *log,
                                      const struct orl_progress *progress,
                                      const struct orl_radii_params *params,
-                                     const double (*viewers)[3], size_t viewer_count,
+                                     const struct orl_view *views, size_t view_count,
                                      struct orl_points *points)
 {
     orl_points_drop_unusable(log, points); // FLANN fails when distances overflow
-    return orl_points_set_some_radii(log, progress, params, viewers, viewer_count, points->count,
+    return orl_points_set_some_radii(log, progress, params, views, view_count, points->count,
                                      points);
 }
 
 enum orl_result orl_points_set_some_radii(const struct orl_log *log,
                                           const struct orl_progress *progress,
                                           const struct orl_radii_params *params,
-                                          const double (*viewers)[3], size_t viewer_count,
+                                          const struct orl_view *views, size_t view_count,
                                           size_t own, struct orl_points *points)
 {
     ORL_REQUIRE(log, params->neighbours >= 1 && params->neighbours <= 64);
@@ -169,12 +169,15 @@ enum orl_result orl_points_set_some_radii(const struct orl_log *log,
                         points->count);
     size_t others = points->count - 1;
     struct search s = {
-        .log = log, .points = points, .viewers = viewers, .viewer_count = viewer_count,
+        .log = log, .points = points, .viewer_count = view_count,
         .neighbours = others < (size_t)params->neighbours ? (int)others : params->neighbours,
         .overlap = params->overlap};
+    s.viewers = orl_array(log, view_count, sizeof *s.viewers);
+    for (size_t i = 0; s.viewers && i < view_count; i++)
+        orl_pose_centre(&views[i].cam_from_world, s.viewers[i]);
     s.found = orl_array(log, (size_t)CHUNK * ((size_t)s.neighbours + 1), sizeof *s.found);
     s.dist2 = orl_array(log, (size_t)CHUNK * ((size_t)s.neighbours + 1), sizeof *s.dist2);
-    enum orl_result result = s.found && s.dist2 ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = s.viewers && s.found && s.dist2 ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, orl_point_search_open(log, points, s.neighbours + 1, &s.near));
     for (size_t first = 0; result == ORL_OK && first < own; first += CHUNK) {
         orl_progress_report(progress, "radii", (double)first, (double)own, NULL);
@@ -186,6 +189,7 @@ enum orl_result orl_points_set_some_radii(const struct orl_log *log,
     if (result == ORL_OK)
         orl_progress_report(progress, "radii", (double)own, (double)own, NULL);
     orl_point_search_close(&s.near);
+    free(s.viewers);
     free(s.found);
     free(s.dist2);
     return result;

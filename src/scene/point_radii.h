@@ -16,12 +16,12 @@ struct orl_radii_params {
 // Sets the radius of every point from the distance to its k nearest neighbours,
 // so that discs of neighbouring points overlap (Airieau 2012, section 3). Points
 // without a normal (0 0 0) get that of a plane fitted to the neighbours, turned
-// towards the nearest of `viewer_count` camera centres. Points that coincide with
-// all their neighbours get the median radius.
+// towards the nearest of the cameras. Points that coincide with all their
+// neighbours get the median radius.
 enum orl_result orl_points_set_radii(const struct orl_log *log,
                                      const struct orl_progress *progress,
                                      const struct orl_radii_params *params,
-                                     const double (*viewers)[3], size_t viewer_count,
+                                     const struct orl_view *views, size_t view_count,
                                      struct orl_points *points) ORL_CHECK_RESULT;
 
 // The same for the first `own` points only, whose neighbours may be any. All must be usable
@@ -29,7 +29,7 @@ enum orl_result orl_points_set_radii(const struct orl_log *log,
 enum orl_result orl_points_set_some_radii(const struct orl_log *log,
                                           const struct orl_progress *progress,
                                           const struct orl_radii_params *params,
-                                          const double (*viewers)[3], size_t viewer_count,
+                                          const struct orl_view *views, size_t view_count,
                                           size_t own, struct orl_points *points) ORL_CHECK_RESULT;
 
 #endif

@@ -130,15 +130,9 @@ enum orl_result orl_points_limit_radii(const struct orl_log *log,
 enum orl_result orl_points_find_radii(const struct orl_log *log, const struct orl_view *views,
                                       size_t view_count, struct orl_points *points)
 {
-    double (*viewers)[3] = orl_array(log, view_count, sizeof *viewers);
-    ORL_TRY_MEMORY(viewers);
-    for (size_t i = 0; i < view_count; i++)
-        orl_pose_centre(&views[i].cam_from_world, viewers[i]);
-    enum orl_result result =
-        orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
-                             (const double (*)[3])viewers, view_count, points);
+    enum orl_result result = orl_points_set_radii(log, NULL, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
+                                                  views, view_count, points);
     ORL_THEN(result, orl_points_limit_radii(log, &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS},
                                             views, view_count, points));
-    free(viewers);
     return result;
 }

@@ -92,7 +92,7 @@ static void use_views(struct orl_points *points)
 static void use_points(struct orl_points *points)
 {
     static const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
-    const double viewers[1][3] = {{0, 0, -5}};
+    const struct orl_view view = {.cam_from_world = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 5}}};
     struct orl_points other;
     for (size_t i = 0; i < points->count; i++)
         fuzz_require(orl_point_usable(points->position[i]) && points->radius[i] >= 0 &&
@@ -102,7 +102,7 @@ static void use_points(struct orl_points *points)
     fuzz_require(orl_points_write(&fuzz_log, fuzz_path("again.ply"), points, false) == ORL_OK &&
                      orl_points_read(&fuzz_log, fuzz_path("again.ply"), &other) == ORL_OK &&
                      other.count == points->count, "points can be written");
-    fuzz_require(orl_points_set_radii(&fuzz_log, NULL, &radii, viewers, 1, points) == ORL_OK,
+    fuzz_require(orl_points_set_radii(&fuzz_log, NULL, &radii, &view, 1, points) == ORL_OK,
                  "radii are found");
     for (size_t i = 0; i < points->count; i++)
         fuzz_require(points->radius[i] > 0 && isfinite(points->radius[i]), "radii are usable");

@@ -14,6 +14,13 @@ static double random_unit(uint32_t *state)
     return (*state >> 8) / 16777216.0;
 }
 
+static struct orl_view view_from(const double eye[3])
+{
+    struct orl_view view = {.cam_from_world.r = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    orl_pose_set_centre(&view.cam_from_world, eye);
+    return view;
+}
+
 static double distance(const float a[3], const float b[3])
 {
     double d2 = 0;
@@ -135,16 +142,16 @@ static void normals_of_upright_planes(void **state)
     enum { SIDE = 8 };
     for (int axis = 0; axis < 3; axis++) {
         struct orl_points points;
-        double viewer[1][3] = {{3, 3, 3}};
-        viewer[0][axis] = 20;
+        double eye[3] = {3, 3, 3};
+        eye[axis] = 20;
+        const struct orl_view view = view_from(eye);
         assert_int_equal(orl_points_init(NULL, &points, SIDE * SIDE), ORL_OK);
         for (int i = 0; i < SIDE * SIDE; i++) {
             points.position[i][(axis + 1) % 3] = (float)(i % SIDE);
             points.position[i][(axis + 2) % 3] = (float)(i / SIDE);
         }
         const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
-        assert_int_equal(orl_points_set_radii(NULL, NULL, &params, (const double(*)[3])viewer, 1,
-                                              &points), ORL_OK);
+        assert_int_equal(orl_points_set_radii(NULL, NULL, &params, &view, 1, &points), ORL_OK);
         for (int i = 0; i < SIDE * SIDE; i++)
             assert_float_equal(points.normal[i][axis], 1, 1e-5);
         orl_points_finish(&points);
@@ -167,10 +174,10 @@ static void fits_normals(void **state)
         points.position[i][2] = (float)(0.6 * u);
     }
     points.normal[5][1] = 1;
-    const double viewers[2][3] = {{108 + 30 * n[0], 10, 6 + 30 * n[2]},
-                                  {108 - 900 * n[0], 10, 6 - 900 * n[2]}};
+    const struct orl_view views[2] = {view_from((double[]){108 + 30 * n[0], 10, 6 + 30 * n[2]}),
+                                      view_from((double[]){108 - 900 * n[0], 10, 6 - 900 * n[2]})};
     const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
-    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, viewers, 2, &points), ORL_OK);
+    assert_int_equal(orl_points_set_radii(NULL, NULL, &params, views, 2, &points), ORL_OK);
     for (int i = 0; i < SIDE * SIDE; i++) {
         if (i == 5)
             continue;
@@ -226,13 +233,13 @@ static void takes_few_points(void **state)
 {
     (void)state;
     const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
-    const double viewer[1][3] = {{0, 0, -10}};
+    const struct orl_view view = view_from((double[]){0, 0, -10});
     for (size_t count = 0; count < 4; count++) {
         struct orl_points points;
         assert_int_equal(orl_points_init(NULL, &points, count), ORL_OK);
         for (size_t i = 0; i < count; i++)
             points.position[i][0] = 3 * (float)i;
-        assert_int_equal(orl_points_set_radii(NULL, NULL, &params, viewer, 1, &points), ORL_OK);
+        assert_int_equal(orl_points_set_radii(NULL, NULL, &params, &view, 1, &points), ORL_OK);
         for (size_t i = 0; i < count; i++) {
             assert_true(points.radius[i] > 0 && isfinite(points.radius[i]));
             double length = 0;
