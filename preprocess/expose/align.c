@@ -24,6 +24,10 @@ static const double SAMPLE_SIGMA = 0.1;
 static const double GAIN_SIGMA = 0.02;
 // A camera that processes each photograph by its content stays within this of what EXIF tells.
 static const double UNLIKE_EV = 1;
+// Standard deviation of EXIF exposures, and of the gains of photographs of unknown exposure.
+static const double EXPOSURE_SIGMA_EV = 0.3, UNKNOWN_SIGMA_EV = 1;
+// Greatest plausible difference from the known exposure, and of a channel's gain from the mean.
+static const double LIMIT_EV = 2, COLOUR_LIMIT_EV = 1;
 
 // --- the problem: log colour + log gain - log vignetting is equal for all observations of a point
 // ---
@@ -31,7 +35,6 @@ static const double UNLIKE_EV = 1;
 struct problem {
     const struct orl_log *log;
     const struct orl_samples *samples;
-    const struct orl_align_params *params;
     struct orl_align_photo *photos;
     size_t photo_count, lens_count;
     float (*value)[4];  // log of linear colour: r g b and their mean; per observation
@@ -329,8 +332,7 @@ static void set_prior(struct problem *p)
     double centre = mean_ev(p);
     for (size_t i = 0; i < p->photo_count; i++) {
         const struct orl_align_photo *photo = &p->photos[i];
-        double sigma = LN2 * (photo->known ? p->params->exposure_sigma_ev
-                                           : p->params->gain_sigma_ev);
+        double sigma = LN2 * (photo->known ? EXPOSURE_SIGMA_EV : UNKNOWN_SIGMA_EV);
         p->prior[i] = photo->known ? -LN2 * (photo->ev - centre) : 0;
         p->precision[i] = 1 / (sigma * sigma);
     }
@@ -369,15 +371,14 @@ static double mean_gain_ev(const struct orl_align_photo *photo)
     return mean;
 }
 
-static bool is_plausible(const struct problem *p, const struct orl_align_photo *photo)
+static bool is_plausible(const struct orl_align_photo *photo)
 {
     double mean = mean_gain_ev(photo);
     for (int c = 0; c < 3; c++)
-        if (!(fabs(log2((double)photo->gain[c]) - mean) <= p->params->colour_limit_ev))
+        if (!(fabs(log2((double)photo->gain[c]) - mean) <= COLOUR_LIMIT_EV))
             return false;
     // A photograph of unknown exposure may differ from the reference by twice the limit.
-    return fabs(mean + (photo->known ? photo->ev : 0)) <=
-           (photo->known ? 1 : 2) * p->params->limit_ev;
+    return fabs(mean + (photo->known ? photo->ev : 0)) <= (photo->known ? 1 : 2) * LIMIT_EV;
 }
 
 // Refuses implausible gains and returns true when it refused another photograph. A photograph
@@ -390,7 +391,7 @@ static bool refuse(struct problem *p)
         if (photo->refused || photo->samples < SAMPLES_MIN)
             continue;
         photo->off_ev = photo->known ? fabs(mean_gain_ev(photo) + photo->ev) : 0;
-        if (!is_plausible(p, photo))
+        if (!is_plausible(photo))
             again = photo->refused = true;
     }
     return again;
@@ -419,8 +420,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
                 p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
             residuals(p, 3, false);
             alignment->spread_before_ev = spread(p, false) / LN2;
-            if (p->params->vignetting)
-                result = fit_lenses(p, alignment);
+            result = fit_lenses(p, alignment);
         }
         for (int c = 0; result == ORL_OK && c < 4; c++) {
             result = fit(p, c, false);
@@ -445,12 +445,12 @@ static size_t lens_count(const struct orl_align_photo *photos, size_t count)
 }
 
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
-                          const struct orl_align_params *params, struct orl_align_photo *photos,
-                          size_t photo_count, struct orl_alignment *alignment)
+                          struct orl_align_photo *photos, size_t photo_count,
+                          struct orl_alignment *alignment)
 {
     memset(alignment, 0, sizeof *alignment);
-    struct problem p = {.log = log, .samples = samples, .params = params, .photos = photos,
-                        .photo_count = photo_count, .lens_count = lens_count(photos, photo_count)};
+    struct problem p = {.log = log, .samples = samples, .photos = photos, .photo_count = photo_count,
+                        .lens_count = lens_count(photos, photo_count)};
     size_t unknowns = photo_count + LENS_TERMS * p.lens_count, count = samples->count;
     float *floats = orl_array(log, count, 9 * sizeof *floats);
     double *doubles = orl_array(log, unknowns, (unknowns + 3) * sizeof *doubles);

@@ -17,16 +17,6 @@ struct orl_align_photo {
     bool refused;   // its gain was not plausible, so that of its exposure is used
 };
 
-struct orl_align_params {
-    bool vignetting;
-    double exposure_sigma_ev; // standard deviation of EXIF exposures
-    double gain_sigma_ev;     // that of the gains of photographs of unknown exposure
-    double limit_ev;          // greatest plausible difference from the known exposure
-    double colour_limit_ev;   // greatest plausible difference of a channel's gain from the mean
-};
-#define ORL_ALIGN_DEFAULTS .vignetting = true, .exposure_sigma_ev = 0.3, .gain_sigma_ev = 1.0, \
-                           .limit_ev = 2.0, .colour_limit_ev = 1.0
-
 struct orl_alignment {
     float (*vignette)[3];  // owned; per lens, as in struct orl_photo
     size_t lens_count;
@@ -38,8 +28,8 @@ struct orl_alignment {
 // geometric mean is that of 2^-ev over photographs with known exposures, or 1 when no exposure is
 // known.
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
-                          const struct orl_align_params *params, struct orl_align_photo *photos,
-                          size_t photo_count, struct orl_alignment *alignment) ORL_CHECK_RESULT;
+                          struct orl_align_photo *photos, size_t photo_count,
+                          struct orl_alignment *alignment) ORL_CHECK_RESULT;
 // True if a quarter or more of the photographs whose exposure is known look unlike it.
 bool orl_align_contradicts(const struct orl_align_photo *photos, size_t count);
 void orl_alignment_finish(struct orl_alignment *alignment);

@@ -184,24 +184,14 @@ static enum orl_result estimate_exposures(struct exposing *e)
 static enum orl_result take_samples(struct exposing *e)
 {
     struct orl_job *job = e->job;
-    const struct orl_sample_params params = {ORL_SAMPLE_DEFAULTS};
     struct orl_points points = {0};
     struct orl_sample_photo *photos = orl_array(job->log, e->train, sizeof *photos);
-    char **paths = orl_array(job->log, e->train, sizeof *paths);
-    enum orl_result result = photos && paths ? orl_lod_read_cloud(job->log, job->dir,
-                                                                  ORL_LOD_SAMPLE, &points)
-                                             : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
-        paths[i] = orl_strdup(job->log, ORL_PATH(job->dir, "images/%s", e->photos[i].source->name));
-        photos[i] = (struct orl_sample_photo){paths[i], e->photos[i].view};
-        if (!paths[i])
-            result = ORL_ERR_MEMORY;
-    }
-    ORL_THEN(result, orl_samples_take(job->log, job->progress, photos, e->train, &points, &params,
-                                      &e->samples));
-    for (size_t i = 0; paths && i < e->train; i++)
-        free(paths[i]);
-    free(paths);
+    ORL_TRY_MEMORY(photos);
+    for (size_t i = 0; i < e->train; i++)
+        photos[i] = (struct orl_sample_photo){e->photos[i].source->name, e->photos[i].view};
+    enum orl_result result = orl_lod_read_cloud(job->log, job->dir, ORL_LOD_SAMPLE, &points);
+    ORL_THEN(result, orl_samples_take(job->log, job->progress, ORL_PATH(job->dir, "images"), photos, e->train,
+                                      &points, &e->samples));
     free(photos);
     orl_points_finish(&points);
     return result;
@@ -322,7 +312,6 @@ static void say_alignment(const struct exposing *e, const struct orl_align_photo
 
 static enum orl_result align(struct exposing *e)
 {
-    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
     struct orl_alignment alignment = {0};
     struct orl_align_photo *photos = orl_array(e->job->log, e->train, sizeof *photos);
     enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
@@ -333,7 +322,7 @@ static enum orl_result align(struct exposing *e)
             .linear = response < 0 ? NULL
                                    : (const float (*)[256])e->responses[response].linear};
     }
-    ORL_THEN(result, orl_align(e->job->log, &e->samples, &params, photos, e->train, &alignment));
+    ORL_THEN(result, orl_align(e->job->log, &e->samples, photos, e->train, &alignment));
     e->contradicted = result == ORL_OK && orl_align_contradicts(photos, e->train);
     for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
         size_t lens = (size_t)lens_of(e, i);

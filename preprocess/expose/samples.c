@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/color.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "io/picture.h"
 #include "scene/depth_buffer.h"
@@ -13,9 +14,12 @@ enum {
     LEVELS_MAX = 8,       // of a photograph's pyramid
     PHOTOS_PER_POINT = 32, // more observations add little, and the cost of alignment grows with
                            // their square
+    POINTS_MAX = 100000,  // that are examined
 };
 static const uint8_t CLIPPED = 254, BLACK = 0;
 static const float SPOILT_MAX = 0.02f; // greatest fraction of clipped pixels in a patch
+static const float CONTRAST_MAX = 0.5f; // (brightest - darkest) / mean within a patch, linear
+static const double COSINE_MIN = 0.35;  // of the angle between normal and viewing direction
 
 // --- a photograph at several scales ---
 
@@ -65,14 +69,15 @@ static enum orl_result make_level(const struct orl_log *log, struct pyramid *p, 
     return ORL_OK;
 }
 
-static enum orl_result make_pyramid(const struct orl_log *log,
+static enum orl_result make_pyramid(const struct orl_log *log, const char *dir,
                                     const struct orl_sample_photo *photo, struct pyramid *p)
 {
     const struct orl_camera *c = &photo->view.camera;
-    ORL_TRY(orl_picture_read(log, photo->path, 3, &p->image));
+    const char *path = ORL_PATH(dir, "%s", photo->name);
+    ORL_TRY(orl_picture_read(log, path, 3, &p->image));
     if (p->image.width != c->width || p->image.height != c->height)
         return orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
-                        photo->path, p->image.width, p->image.height, c->width, c->height);
+                        path, p->image.width, p->image.height, c->width, c->height);
     for (int v = 0; v < 256; v++)
         p->linear[v] = orl_srgb_decode((float)v / 255);
     p->width[0] = p->image.width;
@@ -112,7 +117,7 @@ static struct texel bilinear(const struct pyramid *p, int level, double x, doubl
 // Mean of 3x3 texels, a third of the patch's width apart. Returns false when every channel of the
 // patch is clipped, or when the patch is so uneven that another photograph would show another mean.
 static bool take_patch(const struct pyramid *p, const double pixel[2], double radius,
-                       float contrast_max, struct orl_observation *item)
+                       struct orl_observation *item)
 {
     double step = 2 * radius / 3;
     int level = 0;
@@ -132,7 +137,7 @@ static bool take_patch(const struct pyramid *p, const double pixel[2], double ra
         for (int c = 0; c < 3; c++)
             sum[c] += (double)t.rgb[c] / 9;
     }
-    if (item->clipped == 7 || brightest - darkest > contrast_max * 0.5f * (brightest + darkest))
+    if (item->clipped == 7 || brightest - darkest > CONTRAST_MAX * 0.5f * (brightest + darkest))
         return false;
     for (int c = 0; c < 3; c++)
         item->value[c] = 255 * orl_srgb_encode((float)sum[c]);
@@ -143,15 +148,15 @@ static bool take_patch(const struct pyramid *p, const double pixel[2], double ra
 
 struct taking {
     const struct orl_log *log;
+    const char *dir; // of the photographs
     const struct orl_points *points;
-    const struct orl_sample_params *params;
     size_t stride;
     struct orl_observation *items;
     uint32_t *item_points;
     size_t count, item_capacity, point_capacity;
 };
 
-static bool faces(const struct orl_points *points, size_t i, const double eye[3], double min)
+static bool faces(const struct orl_points *points, size_t i, const double eye[3])
 {
     const float *n = points->normal[i], *at = points->position[i];
     double to[3], dot = 0, length = 0;
@@ -162,7 +167,7 @@ static bool faces(const struct orl_points *points, size_t i, const double eye[3]
         dot += to[k] * (double)n[k];
         length += to[k] * to[k];
     }
-    return dot >= min * sqrt(length);
+    return dot >= COSINE_MIN * sqrt(length);
 }
 
 static double squared_radius(const struct orl_camera *c, const double pixel[2])
@@ -179,12 +184,12 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
     double pixel[2], depth;
     struct orl_observation item = {.photo = photo};
     if (!orl_point_project(view, t->points->position[point], pixel, &depth) ||
-        !faces(t->points, point, eye, (double)t->params->cosine_min) ||
+        !faces(t->points, point, eye) ||
         !orl_depth_buffer_shows(buffer, pixel, depth))
         return ORL_OK;
     // The patch covers at least the pixels by which calibration may be wrong.
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 3.0);
-    if (!take_patch(pyramid, pixel, radius, t->params->contrast_max, &item))
+    if (!take_patch(pyramid, pixel, radius, &item))
         return ORL_OK;
     ORL_TRY(ORL_GROW(t->log, t->items, t->item_capacity, t->count));
     ORL_TRY(ORL_GROW(t->log, t->item_points, t->point_capacity, t->count));
@@ -201,7 +206,7 @@ static enum orl_result take_photo(struct taking *t, const struct orl_sample_phot
     struct pyramid pyramid = {0};
     double eye[3];
     orl_pose_centre(&photo->view.cam_from_world, eye);
-    enum orl_result result = make_pyramid(t->log, photo, &pyramid);
+    enum orl_result result = make_pyramid(t->log, t->dir, photo, &pyramid);
     ORL_THEN(result, orl_depth_buffer_draw(t->log, &photo->view, t->points, &buffer));
     for (size_t i = 0; result == ORL_OK && i < t->points->count; i += t->stride)
         result = take_point(t, index, &photo->view, eye, &buffer, &pyramid, i);
@@ -211,16 +216,15 @@ static enum orl_result take_photo(struct taking *t, const struct orl_sample_phot
 }
 
 enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_progress *progress,
-                                 const struct orl_sample_photo *photos, size_t photo_count,
-                                 const struct orl_points *points,
-                                 const struct orl_sample_params *params,
+                                 const char *dir, const struct orl_sample_photo *photos,
+                                 size_t photo_count, const struct orl_points *points,
                                  struct orl_samples *samples)
 {
     memset(samples, 0, sizeof *samples);
     ORL_REQUIRE(log, points->count < UINT32_MAX && photo_count < UINT32_MAX);
-    struct taking t = {.log = log, .points = points, .params = params, .stride = 1};
-    if (params->points_max && points->count > params->points_max)
-        t.stride = (points->count + params->points_max - 1) / params->points_max;
+    struct taking t = {.log = log, .dir = dir, .points = points, .stride = 1};
+    if (points->count > POINTS_MAX)
+        t.stride = (points->count + POINTS_MAX - 1) / POINTS_MAX;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
         if (orl_progress_cancelled(progress))
@@ -251,13 +255,12 @@ enum orl_result orl_samples_collect(const struct orl_log *log,
                                     struct orl_samples *samples)
 {
     memset(samples, 0, sizeof *samples);
-    size_t *at = orl_array(log, point_limit, sizeof *at), *seen = NULL, *passed = NULL;
-    seen = orl_array(log, point_limit, sizeof *seen);
-    passed = orl_array(log, point_limit, sizeof *passed);
+    size_t *at = orl_array(log, point_limit, 3 * sizeof *at);
+    ORL_TRY_MEMORY(at);
+    size_t *seen = at + point_limit, *passed = seen + point_limit;
     samples->first = orl_array(log, point_limit + 1, sizeof *samples->first);
     samples->items = orl_array(log, count, sizeof *samples->items);
-    enum orl_result result = at && seen && passed && samples->first && samples->items
-                                 ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = samples->first && samples->items ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         seen[points[i]]++;
     for (size_t p = 0; result == ORL_OK && p < point_limit; p++) {
@@ -275,8 +278,6 @@ enum orl_result orl_samples_collect(const struct orl_log *log,
             samples->items[at[p]++] = observations[i];
     }
     free(at);
-    free(seen);
-    free(passed);
     if (result != ORL_OK)
         orl_samples_finish(samples);
     return result;

@@ -8,7 +8,7 @@
 
 // A photograph to take samples from.
 struct orl_sample_photo {
-    const char *path; // of the undistorted file
+    const char *name; // of the undistorted file in the folder of photographs
     struct orl_view view;
 };
 
@@ -27,20 +27,12 @@ struct orl_samples {
     struct orl_observation *items; // sorted by point, then by photograph
 };
 
-struct orl_sample_params {
-    size_t points_max;   // greatest number of points examined; 0: all
-    float contrast_max;  // (brightest - darkest) / mean within a patch, linear, (0, 10]
-    float cosine_min;    // of the angle between normal and viewing direction
-};
-#define ORL_SAMPLE_DEFAULTS .points_max = 100000, .contrast_max = 0.5f, .cosine_min = 0.35f
-
 // Visibility is tested against a depth buffer of all points. A patch has the same size in the scene
 // in every photograph: the point's radius to either side. Only points that at least two photographs
 // show are kept. Photographs are read one at a time.
 enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_progress *progress,
-                                 const struct orl_sample_photo *photos, size_t photo_count,
-                                 const struct orl_points *points,
-                                 const struct orl_sample_params *params,
+                                 const char *dir, const struct orl_sample_photo *photos,
+                                 size_t photo_count, const struct orl_points *points,
                                  struct orl_samples *samples) ORL_CHECK_RESULT;
 void orl_samples_finish(struct orl_samples *samples);
 // Sorts observations by their points, points[i] < point_limit. A point keeps at most 32

@@ -131,8 +131,7 @@ static void gains_undo_exposure_and_colour(void **state)
     struct orl_samples samples = make_samples(uneven, 0.1, -4, -1.5);
     struct orl_align_photo photos[PHOTOS] = {0};
     struct orl_alignment alignment;
-    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
-    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
     check_gains(photos, uneven, 0.02);
     for (int c = 0; c < 3; c++) {
         double sum = 0;
@@ -152,13 +151,12 @@ static void known_exposures_set_the_reference(void **state)
     struct orl_samples samples = make_samples(uneven, 0, -4, -1.5);
     struct orl_align_photo photos[PHOTOS] = {0};
     struct orl_alignment alignment;
-    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
     double sum = 0;
     for (int i = 0; i < 3; i++) {
         photos[i].known = true;
         photos[i].ev = log2(uneven[i].exposure[1]) + 2;
     }
-    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
     check_gains(photos, uneven, 0.03);
     for (int i = 0; i < 3; i++)
         sum += log2((double)photos[i].gain[1]) + photos[i].ev;
@@ -177,8 +175,7 @@ static void vignetting_is_found(void **state)
     struct orl_samples samples = make_samples(cameras, 0.05, -4, -1.5);
     struct orl_align_photo photos[PHOTOS] = {0};
     struct orl_alignment alignment;
-    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
-    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
     const float *v = alignment.vignette[0];
     for (int i = 1; i <= 10; i++) {
         double r2 = 0.1 * i;
@@ -201,14 +198,13 @@ static void dark_samples_have_little_say(void **state)
     struct orl_samples samples;
     struct orl_align_photo photos[2] = {0};
     struct orl_alignment alignment;
-    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
     for (uint32_t i = 0; i < 4 * EACH; i++) {
         float value = i / 2 < EACH ? 200 : i % 2 ? 4 : 3;
         points[i] = i / 2;
         items[i] = (struct orl_observation){.photo = i % 2, .value = {value, value, value}};
     }
     assert_int_equal(orl_samples_collect(NULL, items, points, 4 * EACH, 2 * EACH, &samples), ORL_OK);
-    assert_int_equal(orl_align(NULL, &samples, &params, photos, 2, &alignment), ORL_OK);
+    assert_int_equal(orl_align(NULL, &samples, photos, 2, &alignment), ORL_OK);
     assert_true(fabs(log2((double)photos[0].gain[1] / (double)photos[1].gain[1])) < 0.1);
     orl_alignment_finish(&alignment);
     orl_samples_finish(&samples);
@@ -220,12 +216,11 @@ static void implausible_gains_are_refused(void **state)
     struct orl_samples samples = make_samples(uneven, 0, -4, -1.5);
     struct orl_align_photo photos[PHOTOS] = {0};
     struct orl_alignment alignment;
-    const struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
     for (int i = 0; i < PHOTOS; i++) {
         photos[i].known = true;
         photos[i].ev = log2(uneven[i].exposure[1]) + (i == 2 ? 6 : 0);
     }
-    assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+    assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
     for (int i = 0; i < PHOTOS; i++)
         assert_int_equal(photos[i].refused, i == 2);
     assert_float_equal(photos[2].gain[0], exp2(-photos[2].ev), 1e-6);
@@ -247,7 +242,6 @@ static void wrong_exposures_are_noticed(void **state)
     (void)state;
     struct camera cameras[PHOTOS];
     struct orl_align_photo photos[PHOTOS] = {0};
-    struct orl_align_params params = {ORL_ALIGN_DEFAULTS};
     for (int i = 0; i < PHOTOS; i++) {
         double factor = exp2(1.5 * (i % 3 - 1));
         cameras[i] = (struct camera){.exposure = {factor, factor, factor}};
@@ -257,7 +251,7 @@ static void wrong_exposures_are_noticed(void **state)
         struct orl_alignment alignment;
         for (int i = 0; i < PHOTOS; i++)
             photos[i] = (struct orl_align_photo){.known = true, .ev = told ? 1.5 * (i % 3 - 1) : 0};
-        assert_int_equal(orl_align(NULL, &samples, &params, photos, PHOTOS, &alignment), ORL_OK);
+        assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
         assert_int_equal(orl_align_contradicts(photos, PHOTOS), !told);
         orl_alignment_finish(&alignment);
     }
@@ -429,7 +423,6 @@ static void samples_show_what_photographs_have_in_common(void **state)
 {
     (void)state;
     static const float places[6][3] = {{0, 0, 4}, {0, -3, 4}, {0, 3, 4}, {-2, 0, 4}, {2, 0, 4}, {1.5f, 0, 3}};
-    const struct orl_sample_params params = {ORL_SAMPLE_DEFAULTS};
     struct orl_sample_photo photos[2];
     struct orl_points points;
     struct orl_samples samples;
@@ -438,7 +431,7 @@ static void samples_show_what_photographs_have_in_common(void **state)
     write_ramp(path);
     for (int i = 0; i < 2; i++)
         photos[i] = (struct orl_sample_photo){
-            path, {{SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2},
+            "ramp.png", {{SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2},
                    {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {-0.2 * i, 0, 0}}}};
     assert_int_equal(orl_points_init(NULL, &points, 6), ORL_OK);
     for (int i = 0; i < 6; i++) {
@@ -446,7 +439,7 @@ static void samples_show_what_photographs_have_in_common(void **state)
         points.normal[i][2] = i == 3 ? 1 : -1;
         points.radius[i] = i == 5 ? 0.4f : 0.05f;
     }
-    assert_int_equal(orl_samples_take(NULL, NULL, photos, 2, &points, &params, &samples), ORL_OK);
+    assert_int_equal(orl_samples_take(NULL, NULL, dir, photos, 2, &points, &samples), ORL_OK);
     assert_int_equal(samples.point_count, 2);
     assert_int_equal(samples.count, 4);
     // At columns 32 and 30.4 of the ramp, and at 48 and 45.9, in the middle row.

@@ -219,27 +219,23 @@ static void one_viewpoint_gives_samples(void **state)
 {
     (void)state;
     enum { COUNT = 3 };
-    char *dir = test_dir_make(), *paths[COUNT];
+    char *dir = test_dir_make(), names[COUNT][16];
     struct orl_sample_photo photos[COUNT];
     struct orl_samples samples;
-    const struct orl_sample_params params = {ORL_SAMPLE_DEFAULTS};
     for (int i = 0; i < COUNT; i++) {
         struct orl_image image;
-        char name[16];
-        snprintf(name, sizeof name, "%d.png", i);
-        paths[i] = orl_path_join(NULL, dir, name);
+        snprintf(names[i], sizeof names[i], "%d.png", i);
         assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
         for (int k = 0; k < 3 * SIDE * SIDE; k++)
             image.u8[k] = (uint8_t)wall_value(k / 3 % SIDE, k % 3, 2 * (i - 1));
-        assert_int_equal(orl_png_write(NULL, paths[i], &image), ORL_OK);
+        assert_int_equal(orl_png_write(NULL, ORL_PATH(dir, "%s", names[i]), &image), ORL_OK);
         orl_image_finish(&image);
         photos[i] = (struct orl_sample_photo){
-            paths[i], {{SIDE, SIDE, SIDE, SIDE, SIDE / 2.0, SIDE / 2.0},
+            names[i], {{SIDE, SIDE, SIDE, SIDE, SIDE / 2.0, SIDE / 2.0},
                        {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}}}};
     }
     struct orl_points points = make_wall();
-    assert_int_equal(orl_samples_take(NULL, NULL, photos, COUNT, &points, &params, &samples),
-                     ORL_OK);
+    assert_int_equal(orl_samples_take(NULL, NULL, dir, photos, COUNT, &points, &samples), ORL_OK);
     size_t thrice = 0, blue_alone = 0;
     for (size_t p = 0; p < samples.point_count; p++)
         thrice += samples.first[p + 1] - samples.first[p] == COUNT;
@@ -262,8 +258,6 @@ static void one_viewpoint_gives_samples(void **state)
         }
     orl_samples_finish(&samples);
     orl_points_finish(&points);
-    for (int i = 0; i < COUNT; i++)
-        free(paths[i]);
     test_dir_remove(dir);
 }
 
