@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bridge/bridge.h"
+#include "core/cholesky.h"
 #include "core/memory.h"
 
 static const double psnr_max_db = 100;
@@ -55,21 +56,6 @@ struct affine {
     double m[3][3], offset[3];
 };
 
-// Inverse of a symmetric positive definite matrix by cofactors.
-static void invert(const double s[3][3], double inverse[3][3])
-{
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-            inverse[i][j] = s[a][c] * s[b][d] - s[a][d] * s[b][c];
-        }
-    }
-    double det = s[0][0] * inverse[0][0] + s[0][1] * inverse[1][0] + s[0][2] * inverse[2][0];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            inverse[i][j] /= det;
-}
-
 // Least squares of b = m a + offset over all pixels. A weak pull towards the identity makes the
 // solution unique for pictures of few colours.
 static void fit_colour(const struct orl_image *a, const struct orl_image *b, struct affine *fit)
@@ -96,22 +82,20 @@ static void fit_colour(const struct orl_image *a, const struct orl_image *b, str
         aa[j][j] += pull;
         ba[j][j] += pull;
     }
-    double inverse[3][3];
-    invert(aa, inverse);
     for (int j = 0; j < 3; j++) {
+        double factor[3][3];
+        memcpy(factor, aa, sizeof factor);
+        memcpy(fit->m[j], ba[j], sizeof fit->m[j]);
+        orl_cholesky_solve(factor[0], fit->m[j], 3); // with the pull there is a solution
         fit->offset[j] = mean_b[j];
-        for (int k = 0; k < 3; k++) {
-            fit->m[j][k] = 0;
-            for (int l = 0; l < 3; l++)
-                fit->m[j][k] += ba[j][l] * inverse[l][k];
+        for (int k = 0; k < 3; k++)
             fit->offset[j] -= fit->m[j][k] * mean_a[k];
-        }
     }
 }
 
 static double psnr_after_fit(const struct orl_image *a, const struct orl_image *b)
 {
-    struct affine fit;
+    struct affine fit = {0};
     fit_colour(a, b, &fit);
     size_t count = pixel_count(a);
     double sum = 0;

@@ -139,14 +139,8 @@ static enum orl_result add_far(struct refine *r, const struct orl_soft_raster *r
                 continue;
             double beyond = orl_soft_random(state), part = orl_soft_random(state);
             double z = (double)far * (beyond < 0.5 ? 1 + 2 * part : 0.6 + 0.6 * part);
-            const double p[3] = {(x + 0.5 - c->cx) / c->fx * z, (y + 0.5 - c->cy) / c->fy * z, z};
-            const struct orl_pose *pose = &photo->view.cam_from_world;
             double world[3];
-            for (int k = 0; k < 3; k++) {
-                world[k] = 0;
-                for (int j = 0; j < 3; j++)
-                    world[k] += pose->r[j][k] * (p[j] - pose->t[j]);
-            }
+            orl_view_unproject(&photo->view, x + 0.5, y + 0.5, z, world);
             ORL_TRY(orl_soft_add(r->log, &r->model, world, SIGMA * GRID * z / c->fx, FAR_OPACITY,
                                  photo->color.f32 + 3 * pixel));
         }

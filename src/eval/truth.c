@@ -77,15 +77,6 @@ void orl_truth_finish(struct orl_truth *truth)
     memset(truth, 0, sizeof *truth);
 }
 
-static const struct orl_colmap_camera *find_camera(const struct orl_truth *truth,
-                                                   const char *name)
-{
-    for (size_t i = 0; i < truth->model.image_count; i++)
-        if (strcmp(truth->model.images[i].name, name) == 0)
-            return orl_colmap_camera_by_id(&truth->model, truth->model.images[i].camera_id);
-    return NULL;
-}
-
 // Undistorts what was seen from the pixels of the photograph as taken to those of the scene.
 static enum orl_result bring_to_pixels(const struct orl_log *log, const struct orl_truth *truth,
                                        const struct orl_photo *photo, const char *path,
@@ -93,7 +84,8 @@ static enum orl_result bring_to_pixels(const struct orl_log *log, const struct o
 {
     const struct orl_camera *to = &photo->view.camera;
     if (truth->model.image_count) {
-        const struct orl_colmap_camera *from = find_camera(truth, photo->name);
+        const struct orl_colmap_image *image = orl_colmap_image_by_name(&truth->model, photo->name);
+        const struct orl_colmap_camera *from = image ? orl_colmap_camera_by_id(&truth->model, image->camera_id) : NULL;
         return from ? orl_undistort(log, from, to, seen, out)
                     : orl_fail(log, ORL_ERR_DATA, "%s: not in the calibrated model", photo->name);
     }
