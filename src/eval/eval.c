@@ -144,7 +144,7 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
                                                               &heldout, &rendered, &coverage)
                                       : render(job, &heldout, view, &rendered, &coverage));
     ORL_THEN(result, orl_metrics_compare(job->log, &rendered, &heldout.picture, &coverage, &view->metrics));
-    ORL_THEN(result, orl_flip_compare(job->log, &rendered, &heldout.picture, NULL, &view->flip));
+    ORL_THEN(result, orl_flip_compare(job->log, &rendered, &heldout.picture, &view->flip));
     if (result == ORL_OK && job->eval->has_vehicle)
         result = compare_vehicle(job, view, &rendered, &heldout.picture, &coverage);
     if (result == ORL_OK && params->image_dir)

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/color.h"
 #include "core/memory.h"
@@ -274,12 +273,10 @@ static float flip_at(const struct planes *a, const struct planes *b, size_t i, f
 }
 
 enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_image *a,
-                                 const struct orl_image *b, struct orl_image *map, double *mean)
+                                 const struct orl_image *b, double *mean)
 {
     struct planes one = {0}, two = {0};
     *mean = 0;
-    if (map)
-        memset(map, 0, sizeof *map);
     ORL_REQUIRE(log, a->data && a->type == ORL_PIXEL_U8 && a->channels == 3);
     ORL_REQUIRE(log, b->data && b->type == ORL_PIXEL_U8 && b->channels == 3);
     if (a->width != b->width || a->height != b->height)
@@ -287,20 +284,14 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
                         a->width, a->height, b->width, b->height);
     enum orl_result result = prepare(log, a, &one);
     ORL_THEN(result, prepare(log, b, &two));
-    if (result == ORL_OK && map)
-        result = orl_image_init(log, map, a->width, a->height, 1, ORL_PIXEL_F32);
     if (result == ORL_OK) {
         float green[3], blue[3];
         hunt_lab((const float[]){0, 1, 0}, green);
         hunt_lab((const float[]){0, 0, 1}, blue);
         float largest = powf(hyab(green, blue), 0.7f);
         size_t count = (size_t)a->width * (size_t)a->height;
-        for (size_t i = 0; i < count; i++) {
-            float flip = flip_at(&one, &two, i, largest);
-            if (map)
-                map->f32[i] = flip;
-            *mean += (double)flip / (double)count;
-        }
+        for (size_t i = 0; i < count; i++)
+            *mean += (double)flip_at(&one, &two, i, largest) / (double)count;
     }
     free(one.all);
     free(two.all);

@@ -6,10 +6,8 @@
 
 // LDR-FLIP of Andersson et al. 2020 ("FLIP: A Difference Evaluator for Alternating Images"), at 67
 // pixels per degree of visual angle as in the authors' program. a, b: U8 x3, sRGB, of one size.
-// *mean: over all pixels, 0 (equal) to 1. map: F32 x1, FLIP of each pixel; NULL: not needed.
-// Symmetric in a and b.
+// *mean: over all pixels, 0 (equal) to 1. Symmetric in a and b.
 enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_image *a,
-                                 const struct orl_image *b, struct orl_image *map,
-                                 double *mean) ORL_CHECK_RESULT;
+                                 const struct orl_image *b, double *mean) ORL_CHECK_RESULT;
 
 #endif
