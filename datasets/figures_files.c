@@ -190,18 +190,17 @@ enum orl_result orl_figures_play(const struct orl_log *log, const struct orl_pro
 {
     static const double rate = 25;
     const struct job from = {.log = log, .params = params, .dir = out};
-    enum orl_result result = ORL_OK;
     double start = orl_time_s();
-    for (int f = 0; result == ORL_OK && f < params->frames; f++) {
+    for (int f = 0; f < params->frames; f++) {
         wait_until(start + f / rate);
         orl_progress_report(progress, "live", f, params->frames, NULL);
-        for (int c = 0; result == ORL_OK && c < params->cameras; c++) {
+        for (int c = 0; c < params->cameras; c++) {
             const char *pipe = ORL_PATH(dir, "cam%02d", c), *there = ORL_PATH(pipe, "%05d.png", f);
-            result = orl_file_copy(log, VIEW_PATH(&from, "images", c, f, ".png"),
-                                   orl_path_is_pipe(pipe) ? pipe : there);
+            ORL_TRY(orl_file_copy(log, VIEW_PATH(&from, "images", c, f, ".png"),
+                                  orl_path_is_pipe(pipe) ? pipe : there));
         }
         if (orl_progress_cancelled(progress))
-            result = ORL_ERR_CANCELLED;
+            return ORL_ERR_CANCELLED;
     }
-    return result;
+    return ORL_OK;
 }

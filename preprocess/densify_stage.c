@@ -122,13 +122,12 @@ static enum orl_result densify_colmap(struct orl_job *job, json_t *record)
     orl_colmap_arg(&run, "--workspace_path", "%s", job->dir);
     orl_colmap_arg(&run, "--random_seed", "%u", job->params->seed);
     orl_colmap_arg(&run, "--PatchMatchStereo.geom_consistency", "1");
-    enum orl_result result = orl_job_colmap(job, &run);
-    ORL_THEN(result, orl_flush(job->log, ORL_PATH(job->dir, "stereo")));
+    ORL_TRY(orl_job_colmap(job, &run));
+    ORL_TRY(orl_flush(job->log, ORL_PATH(job->dir, "stereo")));
     json_object_set_new(record, "tool",
                         json_sprintf("COLMAP %s patch_match_stereo", job->colmap_version));
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "densify", 1, 1, NULL);
-    return result;
+    orl_progress_report(job->progress, "densify", 1, 1, NULL);
+    return ORL_OK;
 }
 
 // Keeps the maps of an interrupted run when they were made with the same settings.
@@ -147,14 +146,14 @@ static enum orl_result begin_stereo(const struct orl_job *job)
 static enum orl_result choose_densifier(struct orl_job *job, bool *use_colmap)
 {
     enum orl_densifier densifier = job->params->densifier;
-    enum orl_result result = densifier == ORL_DENSIFIER_GL ? ORL_OK : orl_job_find_colmap(job);
+    ORL_TRY(densifier == ORL_DENSIFIER_GL ? ORL_OK : orl_job_find_colmap(job));
     *use_colmap = densifier == ORL_DENSIFIER_COLMAP ||
                   (densifier == ORL_DENSIFIER_AUTO && job->colmap_cuda);
-    if (result == ORL_OK && *use_colmap && !job->colmap_cuda)
-        result = orl_fail(job->log, ORL_ERR_UNSUPPORTED,
+    return *use_colmap && !job->colmap_cuda
+               ? orl_fail(job->log, ORL_ERR_UNSUPPORTED,
                           "--densifier colmap: COLMAP %s here was built without CUDA; use gl",
-                          job->colmap_version);
-    return result;
+                          job->colmap_version)
+               : ORL_OK;
 }
 
 // Leaves SCENE/stereo with this job's key and COLMAP's lists, and maps only if they have that key.

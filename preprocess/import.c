@@ -29,10 +29,8 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
 static enum orl_result fill_points(struct import_job *job, size_t *count)
 {
     const struct import_points known = {&job->known.model, false};
-    enum orl_result result = orl_import_write_model(job, "sparse", false, &known);
-    if (result != ORL_OK || job->params->points == ORL_IMPORT_DENSIFY)
-        return result == ORL_OK ? orl_import_densify(job) : result;
-    return orl_import_write_points(job, count);
+    ORL_TRY(orl_import_write_model(job, "sparse", false, &known));
+    return job->params->points == ORL_IMPORT_DENSIFY ? orl_import_densify(job) : orl_import_write_points(job, count);
 }
 
 static enum orl_result fill(struct import_job *job)

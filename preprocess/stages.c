@@ -253,10 +253,9 @@ static enum orl_result check_record(const struct orl_job *job, json_t *record,
     char sum[SUM_SIZE];
     const json_t *told_sum = json_object_get(record, "sum");
     *sound = false;
-    enum orl_result result = sum_record(job, record, sum);
-    if (result != ORL_OK ||
-        (told_sum && !(json_is_string(told_sum) && strcmp(json_string_value(told_sum), sum) == 0)))
-        return result;
+    ORL_TRY(sum_record(job, record, sum));
+    if (told_sum && !(json_is_string(told_sum) && strcmp(json_string_value(told_sum), sum) == 0))
+        return ORL_OK;
     const json_t *told = json_object_get(record, stages[id].tells);
     bool named = true;
     for (size_t i = 0; id == ORL_STAGE_EXPOSE && i < json_array_size(told); i++)

@@ -129,16 +129,15 @@ static enum orl_result collect_group(const struct orl_job *job,
                                      size_t begin, size_t end, size_t *at,
                                      struct orl_names *names)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+    for (size_t i = 0; i < job->source_count; i++) {
         int of = groups->of[i];
         if (alone ? groups->size[of] != 1 : of != group || groups->size[of] == 1)
             continue;
         if (*at >= begin && *at < end)
-            result = orl_names_add(job->log, names, job->sources[i].name);
+            ORL_TRY(orl_names_add(job->log, names, job->sources[i].name));
         ++*at;
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_features_extract(struct orl_job *job, const struct orl_camera_groups *groups,

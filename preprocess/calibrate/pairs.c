@@ -82,10 +82,9 @@ static enum orl_result try_proposed(struct choice *c, size_t tried)
         if (i == 0 || compare_pairs(&proposed[i], &proposed[kept - 1]) != 0)
             proposed[kept++] = proposed[i];
     c->pair_count = tried + kept;
-    enum orl_result result =
-        orl_preempt_match_all(c->log, c->progress, c->descriptors, proposed, kept);
+    ORL_TRY(orl_preempt_match_all(c->log, c->progress, c->descriptors, proposed, kept));
     qsort(c->pairs, c->pair_count, sizeof *c->pairs, compare_pairs);
-    return result;
+    return ORL_OK;
 }
 
 // How far two photographs are from each other in one respect; NAN: unknown.

@@ -385,15 +385,14 @@ static enum orl_result process_passes(struct densifier *d)
     bool all = true;
     for (size_t i = first_photo(d); i < end_photo(d) && all; i++)
         all = has_maps(d, i, &d->passes[d->pass_count - 1]);
-    enum orl_result result = ORL_OK;
     const struct orl_densify_part *part = d->params.part;
-    for (int p = 0; p < d->pass_count && result == ORL_OK && !all; p++)
+    for (int p = 0; p < d->pass_count && !all; p++)
         if (!part || p == part->pass)
-            result = process_all(d, &d->passes[p]);
+            ORL_TRY(process_all(d, &d->passes[p]));
     // Other parts may still read the maps between the passes.
-    if (result == ORL_OK && !part)
+    if (!part)
         remove_intermediate(d);
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result check_plans(const struct densifier *d)
@@ -462,11 +461,9 @@ static enum orl_result open_workspace(struct densifier *d, const struct orl_name
 static enum orl_result lock_workspace(struct densifier *d)
 {
     bool taken;
-    enum orl_result result = orl_lock(d->log, d->workspace, d->params.part, &d->lock_fd, &taken);
-    return result == ORL_OK && taken
-               ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here",
-                          d->workspace)
-               : result;
+    ORL_TRY(orl_lock(d->log, d->workspace, d->params.part, &d->lock_fd, &taken));
+    return taken ? orl_fail(d->log, ORL_ERR_ARGUMENT, "%s: another oriel densify is at work here", d->workspace)
+                 : ORL_OK;
 }
 
 static void close_densifier(struct densifier *d)

@@ -119,17 +119,16 @@ enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
         cache->entries = orl_array(cache->log, cache->photos->count, sizeof *cache->entries);
     ORL_TRY_MEMORY(cache->entries);
     struct densify_cache_entry *entry = &cache->entries[photo];
-    enum orl_result result = ORL_OK;
     if (!entry->pyramid.count) {
-        result = read_pyramid(
+        ORL_TRY(read_pyramid(
             cache->log, ORL_PATH(cache->images_dir, "%s", densify_photo_name(cache->photos, photo)),
-            &cache->photos->views[photo].camera, &entry->pyramid);
+            &cache->photos->views[photo].camera, &entry->pyramid));
         cache->bytes += pyramid_bytes(&entry->pyramid);
     }
     entry->turn = cache->turn;
     *pyramid = &entry->pyramid;
     make_room(cache);
-    return result;
+    return ORL_OK;
 }
 
 // --- speckles ---

@@ -369,19 +369,18 @@ static enum orl_result heed_pictures(struct exposing *e, bool *again)
 // Responses and vignetting depend on each other. Two rounds are enough, as vignetting is slight.
 static enum orl_result fit_all(struct exposing *e)
 {
-    enum orl_result result = ORL_OK;
-    for (int round = 0; result == ORL_OK && round < 2; round++) {
+    for (int round = 0; round < 2; round++) {
         e->last = round == 1;
         for (size_t i = 0; i < e->count; i++)
             e->photos[i].response = -1;
-        result = fit_responses(e);
-        ORL_THEN(result, align(e));
+        ORL_TRY(fit_responses(e));
+        ORL_TRY(align(e));
         bool again = false;
-        if (result == ORL_OK && round == 0 && e->contradicted)
-            result = heed_pictures(e, &again);
+        if (round == 0 && e->contradicted)
+            ORL_TRY(heed_pictures(e, &again));
         round -= again;
     }
-    return result;
+    return ORL_OK;
 }
 
 // --- held-out photographs ---

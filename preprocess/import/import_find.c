@@ -337,18 +337,15 @@ static int compare_views(const void *a, const void *b)
 
 static enum orl_result name_views(struct import_job *job)
 {
-    enum orl_result result = ORL_OK;
     job->sequence = job->views[0].picture.kind != IMPORT_PICTURE;
-    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+    for (size_t i = 0; i < job->view_count; i++) {
         struct import_view *view = &job->views[i];
         if ((view->picture.kind != IMPORT_PICTURE) != job->sequence)
             return orl_fail(job->log, ORL_ERR_DATA, "%s is %s, but %s is %s", view->picture.path,
                             job->sequence ? "one picture" : "a sequence",
                             job->views[0].picture.path, job->sequence ? "a sequence" : "one");
-        result = name_view(job, view);
+        ORL_TRY(name_view(job, view));
     }
-    if (result != ORL_OK)
-        return result;
     qsort(job->views, job->view_count, sizeof *job->views, compare_views);
     for (size_t i = 1; i < job->view_count; i++)
         if (strcmp(job->views[i].name, job->views[i - 1].name) == 0)
@@ -432,9 +429,8 @@ static enum orl_result find_companions(struct import_job *job, const char *optio
 static enum orl_result find_stated_masks(struct import_job *job)
 {
     const struct orl_known_cameras *known = &job->known;
-    enum orl_result result = ORL_OK;
     size_t missing = 0;
-    for (size_t i = 0; result == ORL_OK && known->pictures && i < job->view_count; i++) {
+    for (size_t i = 0; known->pictures && i < job->view_count; i++) {
         struct import_view *view = &job->views[i];
         const char *told = known->pictures[view->image->id - 1].mask;
         if (!told)
@@ -444,14 +440,14 @@ static enum orl_result find_stated_masks(struct import_job *job)
             missing++;
             continue;
         }
-        view->mask.kind = IMPORT_PICTURE;
         view->mask.path = orl_strdup(job->log, path);
-        result = view->mask.path ? ORL_OK : ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(view->mask.path);
+        view->mask.kind = IMPORT_PICTURE;
     }
-    if (result == ORL_OK && missing)
+    if (missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: masks of %zu of %zu cameras, which their file names, are not "
                  "here", known->folder, missing, job->view_count);
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_import_find_all(struct import_job *job)

@@ -299,18 +299,16 @@ static enum orl_result settle_camera(struct import_job *job, struct import_view 
 {
     struct orl_picture_info info;
     struct orl_camera *target = &job->targets[view->camera];
-    enum orl_result result = orl_picture_inspect(job->log, path, &info);
-    if (result == ORL_OK && info.panorama)
-        result = orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: " ORL_PANORAMA_ADVICE, path);
+    ORL_TRY(orl_picture_inspect(job->log, path, &info));
+    if (info.panorama)
+        return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: " ORL_PANORAMA_ADVICE, path);
     view->gain_map = info.gain_map;
-    if (result != ORL_OK || target->width) // known from an earlier picture of the same camera
-        return result;
-    result = orl_known_camera_settle(job->log, &job->known, view->camera, path, info.width,
-                                     info.height);
-    ORL_THEN(result, check_lens(job, view, path));
-    if (result == ORL_OK)
-        *target = orl_import_target(camera_of(job, view), job->params->max_size);
-    return result;
+    if (target->width) // known from an earlier picture of the same camera
+        return ORL_OK;
+    ORL_TRY(orl_known_camera_settle(job->log, &job->known, view->camera, path, info.width, info.height));
+    ORL_TRY(check_lens(job, view, path));
+    *target = orl_import_target(camera_of(job, view), job->params->max_size);
+    return ORL_OK;
 }
 
 static enum orl_result import_time_steps(struct import_job *job, struct import_view *view,
@@ -419,21 +417,19 @@ static void say_unusual(const struct import_job *job)
 
 enum orl_result orl_import_pictures(struct import_job *job)
 {
-    enum orl_result result = ORL_OK;
     job->targets = orl_array(job->log, job->known.model.camera_count, sizeof *job->targets);
     ORL_TRY_MEMORY(job->targets);
-    for (size_t i = 0; result == ORL_OK && i < job->view_count; i++) {
+    for (size_t i = 0; i < job->view_count; i++) {
         if (orl_progress_cancelled(job->progress))
             return ORL_ERR_CANCELLED;
         orl_progress_report(job->progress, "import", (double)i, (double)job->view_count,
                             job->views[i].name);
-        result = import_view(job, &job->views[i]);
+        ORL_TRY(import_view(job, &job->views[i]));
     }
-    if (result == ORL_OK && job->sequence)
-        result = drop_surplus(job);
-    ORL_THEN(result, judge_masks(job));
+    if (job->sequence)
+        ORL_TRY(drop_surplus(job));
+    ORL_TRY(judge_masks(job));
     say_unusual(job);
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "import", 1, 1, NULL);
-    return result;
+    orl_progress_report(job->progress, "import", 1, 1, NULL);
+    return ORL_OK;
 }

@@ -195,8 +195,8 @@ enum orl_result orl_import_write_mesh(struct import_job *job, size_t *triangles)
     *triangles = 0;
     if (!job->params->mesh && !job->params->hull_side)
         return ORL_OK;
-    enum orl_result result = write_mesh(job, "", triangles);
-    return result == ORL_OK && job->params->hull_side ? carve_time_steps(job) : result;
+    ORL_TRY(write_mesh(job, "", triangles));
+    return job->params->hull_side ? carve_time_steps(job) : ORL_OK;
 }
 
 // --- scene.json ---

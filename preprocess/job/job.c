@@ -52,15 +52,14 @@ static enum orl_result claim_folder(const struct orl_job *job, bool *empty)
 static enum orl_result lock_folder(struct orl_job *job, bool empty)
 {
     bool taken = false;
-    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, ".oriel/lock"), false, &job->lock_fd, &taken);
+    ORL_TRY(orl_lock(job->log, ORL_PATH(job->dir, ".oriel/lock"), false, &job->lock_fd, &taken));
     bool begun = orl_job_has(job, ".oriel/stages.json");
-    if (result == ORL_OK && taken)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT,
-                          "%s: another oriel prepare is at work here", job->dir);
-    else if (result == ORL_OK && begun && !job->params->resume)
-        result = fail_there(job);
-    job->fresh = result == ORL_OK && empty && !begun;
-    return result;
+    if (taken)
+        return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel prepare is at work here", job->dir);
+    if (begun && !job->params->resume)
+        return fail_there(job);
+    job->fresh = empty && !begun;
+    return ORL_OK;
 }
 
 enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
@@ -75,10 +74,10 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
     if (!job->dir)
         return orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
     bool empty = false;
-    enum orl_result result = claim_folder(job, &empty);
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(dirs); i++)
-        result = orl_dir_make(log, ORL_PATH(job->dir, "%s", dirs[i]));
-    return result == ORL_OK ? lock_folder(job, empty) : result;
+    ORL_TRY(claim_folder(job, &empty));
+    for (size_t i = 0; i < ORL_COUNT(dirs); i++)
+        ORL_TRY(orl_dir_make(log, ORL_PATH(job->dir, "%s", dirs[i])));
+    return lock_folder(job, empty);
 }
 
 // The model's images are sorted by name, as sources are.

@@ -142,8 +142,8 @@ enum orl_result orl_develop(struct orl_job *job)
     if (!count)
         return ORL_OK;
     ORL_TRY(orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/developed")));
-    enum orl_result result = choose_scale(job);
-    for (size_t i = 0; i < job->source_count && result == ORL_OK; i++) {
+    ORL_TRY(choose_scale(job));
+    for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
         if (!needs_copy(source))
             continue;
@@ -151,9 +151,8 @@ enum orl_result orl_develop(struct orl_job *job)
             return ORL_ERR_CANCELLED;
         orl_progress_report(job->progress, "develop", (double)done++, (double)count,
                             source->given);
-        result = develop(job, source);
+        ORL_TRY(develop(job, source));
     }
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "develop", 1, 1, NULL);
-    return result;
+    orl_progress_report(job->progress, "develop", 1, 1, NULL);
+    return ORL_OK;
 }

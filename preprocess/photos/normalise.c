@@ -49,17 +49,16 @@ enum orl_result orl_normalise(const struct orl_job *job, const char *dir, size_t
     double target;
     bool wanted = find_target(job, &target);
     *copies = 0;
-    enum orl_result result = wanted ? orl_job_fresh_dir(job, dir) : ORL_OK;
-    for (size_t i = 0; wanted && result == ORL_OK && i < job->source_count; i++) {
+    ORL_TRY(wanted ? orl_job_fresh_dir(job, dir) : ORL_OK);
+    for (size_t i = 0; wanted && i < job->source_count; i++) {
         const struct orl_source *source = &job->sources[i];
         double ev = needed_ev(job, source, target);
         const char *path = ORL_PATH(job->dir, "%s/%s", dir, source->name);
         if (orl_progress_cancelled(job->progress))
-            result = ORL_ERR_CANCELLED;
-        else
-            result = ev > 0 ? orl_develop_write(job, source, ev, path)
-                            : orl_job_link(job, source->path, path);
+            return ORL_ERR_CANCELLED;
+        ORL_TRY(ev > 0 ? orl_develop_write(job, source, ev, path)
+                       : orl_job_link(job, source->path, path));
         *copies += ev > 0;
     }
-    return result;
+    return ORL_OK;
 }

@@ -37,14 +37,13 @@ static enum orl_result plan_sizes(const struct orl_log *log, const struct bench_
                                   struct plan *plan)
 {
     static const struct orl_size usual[] = {{512, 512}, {1024, 1024}};
-    enum orl_result result = ORL_OK;
     if (o->sizes.count > SIZES_MAX)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--size: at most %d", SIZES_MAX);
     memcpy(plan->sizes, usual, sizeof usual);
     plan->size_count = o->sizes.count ? o->sizes.count : ORL_COUNT(usual);
-    for (size_t i = 0; result == ORL_OK && i < o->sizes.count; i++)
-        result = orl_size_parse(log, "size", o->sizes.items[i], &plan->sizes[i]);
-    return result;
+    for (size_t i = 0; i < o->sizes.count; i++)
+        ORL_TRY(orl_size_parse(log, "size", o->sizes.items[i], &plan->sizes[i]));
+    return ORL_OK;
 }
 
 static enum orl_result plan_points(const struct orl_log *log, const struct bench_options *o,
@@ -153,12 +152,9 @@ static void print_tables(const struct orl_bench *bench)
 static enum orl_result report(const struct orl_log *log, const struct bench_options *o,
                               const struct orl_bench *bench)
 {
-    enum orl_result result = ORL_OK;
     if (!report_on_stdout(o->json))
         print_tables(bench);
-    if (o->json)
-        result = report_write(log, o->json, orl_bench_to_json(log, bench));
-    return result;
+    return o->json ? report_write(log, o->json, orl_bench_to_json(log, bench)) : ORL_OK;
 }
 
 static enum orl_result run_bench(struct call *call)

@@ -24,17 +24,15 @@ static enum orl_result choose_photos(const struct orl_log *log, const char *work
     size_t excluded = 0;
     if (o->photos)
         return orl_file_read_names(log, o->photos, photos);
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+    for (size_t i = 0; i < model->image_count; i++) {
         if (orl_names_contain(exclude, model->images[i].name))
             excluded++;
         else
-            result = orl_names_add(log, photos, model->images[i].name);
+            ORL_TRY(orl_names_add(log, photos, model->images[i].name));
     }
-    if (result == ORL_OK && excluded < exclude->count)
-        result = orl_fail(log, ORL_ERR_NOT_FOUND, "--exclude: %s has no photograph of some name",
-                          workspace);
-    return result;
+    return excluded < exclude->count ? orl_fail(log, ORL_ERR_NOT_FOUND, "--exclude: %s has no photograph of some name",
+                                                workspace)
+                                     : ORL_OK;
 }
 
 static enum orl_result densify(struct call *call, const struct orl_densify_params *asked)

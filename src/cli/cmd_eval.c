@@ -251,20 +251,18 @@ static enum orl_result evaluate_scene(struct job *job)
 {
     struct call *call = job->call;
     const struct eval_options *o = job->options;
-    enum orl_result result = check_together(call->log, o);
-    if (result == ORL_OK && o->methods.count) // reports wrong settings before the long work
-        result = choose(job, NULL);
-    ORL_THEN(result, command_scene(call, NULL));
-    if (result == ORL_OK && o->time_step >= 0)
-        result = orl_scene_set_frame(call->log, call->scene, o->time_step);
-    ORL_THEN(result, choose(job, call->scene));
-    if (result == ORL_OK && !o->walk && !o->path)
-        result = orl_eval_check(call->log, call->scene);
-    if (result == ORL_OK && o->truth)
-        result = orl_truth_open(call->log, call->scene, o->truth, &job->truth);
-    ORL_THEN(result, command_device(call));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check_together(call->log, o));
+    if (o->methods.count) // reports wrong settings before the long work
+        ORL_TRY(choose(job, NULL));
+    ORL_TRY(command_scene(call, NULL));
+    if (o->time_step >= 0)
+        ORL_TRY(orl_scene_set_frame(call->log, call->scene, o->time_step));
+    ORL_TRY(choose(job, call->scene));
+    if (!o->walk && !o->path)
+        ORL_TRY(orl_eval_check(call->log, call->scene));
+    if (o->truth)
+        ORL_TRY(orl_truth_open(call->log, call->scene, o->truth, &job->truth));
+    ORL_TRY(command_device(call));
     bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||
                  orl_names_contain(&o->methods, "paired");
     return o->walk || o->path ? measure_walk(job, array) : measure_heldout(job, array);

@@ -33,13 +33,12 @@ static void say_origin(const struct orl_log *log, const struct orl_scene *scene)
 static enum orl_result take_points(const struct orl_log *log, struct orl_scene *scene)
 {
     orl_points_finish(&scene->points);
-    enum orl_result result =
-        orl_lod_sample(scene->lod, (size_t)orl_lod_most_in_memory(0), &scene->points);
-    if (result == ORL_OK && scene->points.count < orl_scene_point_count(scene))
+    ORL_TRY(orl_lod_sample(scene->lod, (size_t)orl_lod_most_in_memory(0), &scene->points));
+    if (scene->points.count < orl_scene_point_count(scene))
         orl_logf(log, ORL_LOG_WARNING, "%s has %zu points, which memory does not hold: a level of "
                  "detail of %zu is exported", scene->dir, orl_scene_point_count(scene),
                  scene->points.count);
-    return result;
+    return ORL_OK;
 }
 
 // Refuses what the kind does not read.
@@ -74,19 +73,20 @@ static enum orl_result run_export(struct call *call)
     if (o->kind < 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "export: --as KIND is needed");
     const struct orl_export_kind *kind = &orl_export_kinds[o->kind];
-    enum orl_result result = check(log, o, kind);
-    ORL_THEN(result, command_scene(call, NULL));
-    if (result == ORL_OK && call->scene->lod && kind->points)
-        result = take_points(log, call->scene);
-    if (result == ORL_OK && !kind->placed)
+    ORL_TRY(check(log, o, kind));
+    ORL_TRY(command_scene(call, NULL));
+    if (call->scene->lod && kind->points)
+        ORL_TRY(take_points(log, call->scene));
+    if (!kind->placed)
         say_origin(log, call->scene);
-    if (result == ORL_OK && !kind->write)
+    if (!kind->write) {
         printf("%s is a COLMAP workspace: open its sparse/ with its images/\n", call->inputs[0]);
-    else if (result == ORL_OK)
-        result = kind->write(log, call->progress, call->scene, &params);
-    if (result == ORL_OK && kind->write && !call->common->quiet)
+        return ORL_OK;
+    }
+    ORL_TRY(kind->write(log, call->progress, call->scene, &params));
+    if (!call->common->quiet)
         printf("%s: %s\n", params.out, kind->what);
-    return result;
+    return ORL_OK;
 }
 
 const struct command command_export = {

@@ -66,16 +66,14 @@ static enum orl_result draw_panorama(struct job *job)
     struct orl_panorama p = {.width = o->panorama.width, .height = o->panorama.height};
     struct orl_frame frame;
     struct orl_view view;
-    enum orl_result result = orl_panorama_place(call->log, call->scene, o->at, &p);
-    if (result == ORL_OK && !o->at)
-        result = parse_vector(call->log, "position", &o->position, p.position);
-    if (result == ORL_OK && o->up.count)
-        result = parse_vector(call->log, "up", &o->up, p.up);
-    ORL_THEN(result, orl_hdr_draw_panorama(job->hdr, &p, call->skip, &frame));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_panorama_place(call->log, call->scene, o->at, &p));
+    if (!o->at)
+        ORL_TRY(parse_vector(call->log, "position", &o->position, p.position));
+    if (o->up.count)
+        ORL_TRY(parse_vector(call->log, "up", &o->up, p.up));
+    ORL_TRY(orl_hdr_draw_panorama(job->hdr, &p, call->skip, &frame));
     job->output.attributes.latlong = orl_panorama_view(&p, &view);
-    result = orl_frame_write(call->log, o->out, &view, &frame, &job->output);
+    enum orl_result result = orl_frame_write(call->log, o->out, &view, &frame, &job->output);
     orl_frame_finish(&frame);
     return result;
 }
@@ -133,20 +131,17 @@ static enum orl_result open_all(struct job *job)
     const struct hdr_options *o = call->options;
     struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
     struct orl_choice choice = {0};
-    enum orl_result result = check(o, call->log);
-    if (result == ORL_OK && o->method) // reports wrong settings before the long work
-        result = orl_choice_make(call->log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice);
-    ORL_THEN(result, output_choose(call->log, OUTPUT_OPTIONS_COPY, true, &job->output));
-    if (result == ORL_OK)
-        default_layers(o, &job->output.layers);
-    ORL_THEN(result, command_scene(call, o->light));
-    ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice));
-    if (result == ORL_OK && !o->panorama.width && o->replace_series < 0)
-        result = orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path);
-    ORL_THEN(result, orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
-    ORL_THEN(result, command_device(call));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check(o, call->log));
+    if (o->method) // reports wrong settings before the long work
+        ORL_TRY(orl_choice_make(call->log, NULL, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice));
+    ORL_TRY(output_choose(call->log, OUTPUT_OPTIONS_COPY, true, &job->output));
+    default_layers(o, &job->output.layers);
+    ORL_TRY(command_scene(call, o->light));
+    ORL_TRY(orl_choice_make(call->log, call->scene, ORL_SAMPLE_RADIANCE, o->method, &o->settings, &choice));
+    if (!o->panorama.width && o->replace_series < 0)
+        ORL_TRY(orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path));
+    ORL_TRY(orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
+    ORL_TRY(command_device(call));
     job->method = choice.method->name;
     params.merge = o->merge;
     params.render = choice.params;

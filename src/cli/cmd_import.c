@@ -147,15 +147,14 @@ static enum orl_result run_import(struct call *call)
     params.densify.shader_dir = call->common->shader_dir;
     params.densify.max_vram_bytes = o->max_vram_bytes;
     choose_points(o, &params);
-    enum orl_result result =
-        command_held_out(log, o->test_every, &o->test_list, o->test_block);
-    if (result == ORL_OK && o->frames)
-        result = parse_frames(log, o->frames, &params.frames);
-    ORL_THEN(result, parse_silhouettes(log, o->silhouettes, &params));
-    ORL_THEN(result, parse_mesh(log, o->mesh, &params));
-    ORL_THEN(result, parse_room(log, o->room, &params.room));
-    ORL_THEN(result, orl_import(log, &params, call->progress));
-    return result == ORL_OK ? summary_print(log, params.out) : result;
+    ORL_TRY(command_held_out(log, o->test_every, &o->test_list, o->test_block));
+    if (o->frames)
+        ORL_TRY(parse_frames(log, o->frames, &params.frames));
+    ORL_TRY(parse_silhouettes(log, o->silhouettes, &params));
+    ORL_TRY(parse_mesh(log, o->mesh, &params));
+    ORL_TRY(parse_room(log, o->room, &params.room));
+    ORL_TRY(orl_import(log, &params, call->progress));
+    return summary_print(log, params.out);
 }
 
 static void print_formats(FILE *out)

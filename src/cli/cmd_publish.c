@@ -27,14 +27,13 @@ static enum orl_result run_publish(struct call *call)
     struct orl_publish_params params = {ORL_PUBLISH_OPTIONS(ORL_OPTION_COPY)};
     struct orl_publish_report report;
     params.progress = call->progress;
-    enum orl_result result = command_scene(call, o->light);
-    if (result == ORL_OK)
-        params.radiance = radiance_chosen(call->log, call->scene, o->wish);
-    ORL_THEN(result, command_device(call));
-    ORL_THEN(result, orl_publish(call->gpu, call->scene, &params, &report));
-    if (result == ORL_OK && !call->common->quiet)
+    ORL_TRY(command_scene(call, o->light));
+    params.radiance = radiance_chosen(call->log, call->scene, o->wish);
+    ORL_TRY(command_device(call));
+    ORL_TRY(orl_publish(call->gpu, call->scene, &params, &report));
+    if (!call->common->quiet)
         print_report(o, &report);
-    return result;
+    return ORL_OK;
 }
 
 const struct command command_publish = {

@@ -24,14 +24,13 @@ static enum orl_result run_refine(struct call *call)
     const struct refine_options *o = call->options;
     struct orl_refine_report report = {0};
     struct orl_refine_params params = {ORL_REFINE_OPTIONS(ORL_OPTION_COPY) .progress = call->progress};
-    enum orl_result result = command_scene(call, NULL);
-    ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0},
-                                     &params.choice));
-    ORL_THEN(result, command_device(call));
-    ORL_THEN(result, orl_refine(call->gpu, call->scene, &params, &report));
-    if (result == ORL_OK)
-        print(&report);
-    return result;
+    ORL_TRY(command_scene(call, NULL));
+    ORL_TRY(orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0},
+                            &params.choice));
+    ORL_TRY(command_device(call));
+    ORL_TRY(orl_refine(call->gpu, call->scene, &params, &report));
+    print(&report);
+    return ORL_OK;
 }
 
 const struct command command_refine = {

@@ -41,14 +41,11 @@ static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_
     const struct job *job = priv;
     struct call *call = job->call;
     size_t picture = (size_t)(view - call->path.views); // sequences draw the views of the path
-    enum orl_result result = ORL_OK;
     if (job->time_runs) {
-        result = orl_scene_set_frame(call->log, call->scene, time_step_of(call, picture));
+        ORL_TRY(orl_scene_set_frame(call->log, call->scene, time_step_of(call, picture)));
         if (picture + 1 < job->end)
             orl_renderer_expect(call->renderer, time_step_of(call, picture + 1));
     }
-    if (result != ORL_OK)
-        return result;
     return orl_renderer_draw(call->renderer, view, &job->choice.params, call->skip, frame);
 }
 
@@ -103,21 +100,18 @@ static enum orl_result run_render(struct call *call)
         .max_vram_bytes = o->max_vram_bytes,
         .textures = o->textures,
         .progress = call->progress};
-    enum orl_result result = check(call->log, o);
-    ORL_THEN(result, output_choose(call->log, OUTPUT_OPTIONS_COPY, false, &job.output));
-    ORL_THEN(result, command_scene(call, o->light));
-    if (result == ORL_OK && o->time_step >= 0)
-        result = orl_scene_set_frame(call->log, call->scene, o->time_step);
-    if (result == ORL_OK)
-        limits.radiance = radiance_chosen(call->log, call->scene, o->wish);
-    ORL_THEN(result, orl_choice_make(call->log, call->scene,
-                                     limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
-                                     o->method, &o->settings, &job.choice));
-    ORL_THEN(result, orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path));
-    ORL_THEN(result, orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
-    ORL_THEN(result, command_renderer(call, &limits));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(check(call->log, o));
+    ORL_TRY(output_choose(call->log, OUTPUT_OPTIONS_COPY, false, &job.output));
+    ORL_TRY(command_scene(call, o->light));
+    if (o->time_step >= 0)
+        ORL_TRY(orl_scene_set_frame(call->log, call->scene, o->time_step));
+    limits.radiance = radiance_chosen(call->log, call->scene, o->wish);
+    ORL_TRY(orl_choice_make(call->log, call->scene,
+                            limits.radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+                            o->method, &o->settings, &job.choice));
+    ORL_TRY(orl_views_choose(call->log, call->scene, &VIEW_OPTIONS_COPY, &call->path));
+    ORL_TRY(orl_photos_named(call->log, call->scene, &o->exclude, &call->skip));
+    ORL_TRY(command_renderer(call, &limits));
     job.time_runs = o->path && o->time_step < 0 && call->scene->frame_count > 0;
     return draw_all(&job);
 }

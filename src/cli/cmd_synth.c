@@ -137,14 +137,13 @@ static enum orl_result run_synth(struct call *call)
         monument.width = figures.width = o->size.width;
         monument.height = figures.height = o->size.height;
     }
-    enum orl_result result = parse_exposures(log, &o->exposures, &monument);
-    ORL_THEN(result, check_options(log, o, call->inputs[0], is_figures));
-    if (result == ORL_OK && o->path)
-        result = orl_synth_check(log, &monument);
-    if (result == ORL_OK && o->path)
-        result = read_path(log, o->path, &monument, &call->path);
-    ORL_THEN(result, is_figures ? make_figures(call, &figures) : make_monument(call, &monument));
-    return result;
+    ORL_TRY(parse_exposures(log, &o->exposures, &monument));
+    ORL_TRY(check_options(log, o, call->inputs[0], is_figures));
+    if (o->path) {
+        ORL_TRY(orl_synth_check(log, &monument));
+        ORL_TRY(read_path(log, o->path, &monument, &call->path));
+    }
+    return is_figures ? make_figures(call, &figures) : make_monument(call, &monument);
 }
 
 static void print_names(FILE *out)

@@ -32,21 +32,19 @@ static enum orl_result run_walk(struct call *call)
 {
     const struct walk_options *o = call->options;
     struct orl_choice choice;
-    bool radiance = false;
-    enum orl_result result = command_scene(call, o->light);
-    if (result == ORL_OK)
-        radiance = radiance_chosen(call->log, call->scene, o->wish);
-    ORL_THEN(result, orl_choice_make(call->log, call->scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
-                                     o->method, &o->settings, &choice));
+    ORL_TRY(command_scene(call, o->light));
+    const bool radiance = radiance_chosen(call->log, call->scene, o->wish);
+    ORL_TRY(orl_choice_make(call->log, call->scene, radiance ? ORL_SAMPLE_RADIANCE : ORL_SAMPLE_SRGB,
+                            o->method, &o->settings, &choice));
     const struct orl_renderer_params limits = {.radiance = radiance,
                                                .max_vram_bytes = o->max_vram_bytes};
-    ORL_THEN(result, command_renderer(call, &limits));
+    ORL_TRY(command_renderer(call, &limits));
     const struct orl_walk_params params = {
         .host = o->host ? o->host : "127.0.0.1", .port = o->port, .title = o->title, .edits = o->edits,
         .radiance = radiance,
         .embed_in = o->embed_in, .live = o->live,
         .choice = &choice, .progress = call->progress, .ready = print_address};
-    return result == ORL_OK ? orl_walk_serve(call->gpu, call->renderer, call->scene, &params) : result;
+    return orl_walk_serve(call->gpu, call->renderer, call->scene, &params);
 }
 
 const struct command command_walk = {

@@ -99,8 +99,8 @@ int command_main(const struct command *command, int argc, const char *const *arg
 
 enum orl_result command_scene(struct call *call, const char *light)
 {
-    enum orl_result result = orl_scene_open(call->log, call->inputs[0], &call->scene);
-    return result == ORL_OK ? orl_scene_set_light(call->log, call->scene, light) : result;
+    ORL_TRY(orl_scene_open(call->log, call->inputs[0], &call->scene));
+    return orl_scene_set_light(call->log, call->scene, light);
 }
 
 enum orl_result command_device(struct call *call)
@@ -112,8 +112,8 @@ enum orl_result command_device(struct call *call)
 
 enum orl_result command_renderer(struct call *call, const struct orl_renderer_params *params)
 {
-    enum orl_result result = command_device(call);
-    return result == ORL_OK ? orl_renderer_create(call->gpu, call->scene, params, &call->renderer) : result;
+    ORL_TRY(command_device(call));
+    return orl_renderer_create(call->gpu, call->scene, params, &call->renderer);
 }
 
 enum orl_result command_held_out(const struct orl_log *log, int every, const struct orl_names *list,

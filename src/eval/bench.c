@@ -135,10 +135,9 @@ static enum orl_result measure_run(struct bench_job *job, struct orl_renderer *r
     snprintf(what, sizeof what, "%s %s", orl_bench_kind_names[run->kind], varied);
     orl_progress_report(job->params->progress, "bench", (double)index, (double)bench->run_count,
                         what);
-    enum orl_result result = orl_bench_measure(
-        job, renderer, &choices[index % job->params->choice_count].params, run);
-    if (index > 0 || result != ORL_OK)
-        return result;
+    ORL_TRY(orl_bench_measure(job, renderer, &choices[index % job->params->choice_count].params, run));
+    if (index > 0)
+        return ORL_OK;
     bench->memory_count = orl_gpu_memory(job->gpu, bench->memory, ORL_BENCH_MEMORY_MAX);
     if (bench->memory_count > ORL_BENCH_MEMORY_MAX)
         bench->memory_count = ORL_BENCH_MEMORY_MAX;

@@ -23,8 +23,8 @@ static enum orl_result draw(void *priv, size_t number)
 {
     const struct run_frames *f = priv;
     struct orl_view view = orl_bench_view(f->job, number, f->size);
-    enum orl_result result = orl_timing_show_time_step(f->job->gpu, f->job->scene, f->renderer, number);
-    return result != ORL_OK ? result : orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
+    ORL_TRY(orl_timing_show_time_step(f->job->gpu, f->job->scene, f->renderer, number));
+    return orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
 }
 
 static enum orl_result time_frames(struct run_frames *frames,

@@ -85,22 +85,20 @@ static enum orl_result add_varied(const struct orl_log *log, const struct orl_ch
     const char *equals = strchr(varied, '=');
     if (!equals)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: must be KEY=VALUE,VALUE,..", varied);
-    enum orl_result result = ORL_OK;
     const char *value = equals + 1;
-    while (result == ORL_OK) {
+    for (;;) {
         int length = (int)strcspn(value, ",");
         struct orl_choice one = *choice;
         int size = snprintf(one.setting, sizeof one.setting, "%.*s=%.*s", (int)(equals - varied),
                             varied, length, value);
         if (size >= (int)sizeof one.setting)
             return orl_fail(log, ORL_ERR_ARGUMENT, "--vary %s: a value is too long", varied);
-        result = orl_render_params_set(log, &one.params, one.setting);
-        ORL_THEN(result, add(log, &one, choices));
+        ORL_TRY(orl_render_params_set(log, &one.params, one.setting));
+        ORL_TRY(add(log, &one, choices));
         if (value[length] == '\0')
-            break;
+            return ORL_OK;
         value += length + 1;
     }
-    return result;
 }
 
 static enum orl_result add_paired(const struct orl_log *log, const struct orl_choice *base,

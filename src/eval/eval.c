@@ -46,10 +46,9 @@ static enum orl_result draw_again(void *priv, size_t number)
     const struct view_frames *f = priv;
     struct orl_scene *sequence = f->job->params->sequence;
     if (!f->job->params->draw_radiance) {
-        enum orl_result result = sequence ? orl_timing_show_time_step(f->job->gpu, sequence,
-                                                                      f->job->renderer, number)
-                                          : ORL_OK;
-        return result == ORL_OK ? draw(f, NULL) : result;
+        if (sequence)
+            ORL_TRY(orl_timing_show_time_step(f->job->gpu, sequence, f->job->renderer, number));
+        return draw(f, NULL);
     }
     struct orl_frame frame = {0}; // merging several pictures needs their pixels on the host, so
                                   // reading back is part of the time
@@ -78,12 +77,10 @@ static enum orl_result draw_and_time(struct job *job, const struct orl_view *vie
         .draw = draw_again, .priv = &frames, .views = 1, .seconds = seconds,
         .frames_max = FRAMES_MAX, .pass_frames = PASS_FRAMES, .progress = job->params->progress};
     struct orl_timing timing;
-    enum orl_result result = draw(&frames, frame);
-    ORL_THEN(result, orl_timing_take(job->gpu, &params, &timing));
-    if (result == ORL_OK && job->params->sequence) // the photographs are those of the scene itself
-        result = orl_scene_set_frame(job->log, job->params->sequence, -1);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(draw(&frames, frame));
+    ORL_TRY(orl_timing_take(job->gpu, &params, &timing));
+    if (job->params->sequence) // the photographs are those of the scene itself
+        ORL_TRY(orl_scene_set_frame(job->log, job->params->sequence, -1));
     add_pass_times(job->eval, &timing);
     measured->render_ms = timing.median_ms;
     measured->cpu_ms = timing.cpu_ms;

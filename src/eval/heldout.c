@@ -16,11 +16,10 @@ enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_i
                                    struct orl_image *to)
 {
     float linear[256];
-    enum orl_result result =
-        orl_image_init(log, to, from->width / n, from->height / n, 3, ORL_PIXEL_U8);
+    ORL_TRY(orl_image_init(log, to, from->width / n, from->height / n, 3, ORL_PIXEL_U8));
     for (int i = 0; i < 256; i++)
         linear[i] = orl_srgb_decode((float)i / 255);
-    for (int y = 0; result == ORL_OK && y < to->height; y++)
+    for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++)
             for (int c = 0; c < 3; c++) {
                 float sum = 0;
@@ -31,7 +30,7 @@ enum orl_result orl_heldout_shrink(const struct orl_log *log, const struct orl_i
                 to->u8[3 * ((size_t)y * (size_t)to->width + (size_t)x) + (size_t)c] =
                     (uint8_t)(255 * orl_srgb_encode(sum / (float)(n * n)) + 0.5f);
             }
-    return result;
+    return ORL_OK;
 }
 
 // The camera of the picture from orl_heldout_shrink. Cut-off pixels do not shift the others.

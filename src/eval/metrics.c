@@ -321,14 +321,13 @@ enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_
     struct orl_metrics measured = {0};
     measure_psnr(a, b, coverage, &measured);
     measured.psnr_cc_db = psnr_after_fit(a, b);
-    enum orl_result result = orl_metrics_ssim(log, a, b, &measured.ssim);
-    ORL_THEN(result, measure_rephoto(log, a, b, &measured));
+    ORL_TRY(orl_metrics_ssim(log, a, b, &measured.ssim));
+    ORL_TRY(measure_rephoto(log, a, b, &measured));
     size_t crumbs = 0;
-    ORL_THEN(result, count_crumbs(log, a, b, NULL, &crumbs));
+    ORL_TRY(count_crumbs(log, a, b, NULL, &crumbs));
     measured.crumbs = 1e4 * (double)crumbs / (double)pixel_count(a);
-    if (result == ORL_OK)
-        *metrics = measured;
-    return result;
+    *metrics = measured;
+    return ORL_OK;
 }
 
 enum orl_result orl_metrics_of_part(const struct orl_log *log, const struct orl_image *a,
@@ -345,9 +344,9 @@ enum orl_result orl_metrics_of_part(const struct orl_log *log, const struct orl_
         shown += part->f32[i] > 0.5f;
         covered += part->f32[i] > 0.5f && coverage->f32[i] > 0.5f;
     }
-    enum orl_result result = count_crumbs(log, a, b, part, &crumbs);
-    if (result != ORL_OK || !shown)
-        return result;
+    ORL_TRY(count_crumbs(log, a, b, part, &crumbs));
+    if (!shown)
+        return ORL_OK;
     *metrics = (struct orl_part_metrics){whole.psnr_covered_db, 1e4 * (double)crumbs / (double)shown,
                                          (double)covered / (double)shown};
     return ORL_OK;

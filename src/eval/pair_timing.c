@@ -53,13 +53,10 @@ enum orl_result orl_pair_timing_take(const struct orl_pair_timing_params *params
 {
     double logs[ORL_PAIR_ROUNDS_MAX], first[ORL_PAIR_ROUNDS_MAX];
     *timing = (struct orl_pair_timing){.error = INFINITY};
-    enum orl_result result = ORL_OK;
     while (timing->rounds < params->rounds_max && !is_enough(params, timing)) {
         double ms[2];
         size_t n = timing->rounds;
-        result = take_round(params, n, ms);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(take_round(params, n, ms));
         first[n] = ms[0];
         logs[n++] = log(ms[1] / ms[0]);
         timing->rounds = n;

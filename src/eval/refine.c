@@ -378,8 +378,8 @@ static enum orl_result run(struct refine *r, struct orl_gpu *gpu)
     const double photographs = (double)train;
     r->steps = r->params->steps ? r->params->steps
                                 : fmin(fmax(STEPS_OF_PHOTO, STEPS_MIN / photographs), STEPS_MAX / photographs);
-    if (!(r->photos = orl_array(r->log, train, sizeof *r->photos)))
-        return ORL_ERR_MEMORY;
+    r->photos = orl_array(r->log, train, sizeof *r->photos);
+    ORL_TRY_MEMORY(r->photos);
     ORL_TRY(read_photos(r, false));
     ORL_TRY(read_photos(r, true));
     ORL_TRY(start(r, gpu));

@@ -130,20 +130,18 @@ static bool is_chosen(const struct orl_search *s, const struct orl_render_option
 // while the result gets better. Repeats rounds over all of them until a round brings no gain.
 static enum orl_result numbers(struct orl_search *s, const struct orl_names *keys)
 {
-    enum orl_result result = ORL_OK;
     bool better = true;
     s->planned = (double)s->trial_count;
     for (const struct orl_render_option *o = orl_render_options; o->key; o++)
         s->planned += is_chosen(s, o, keys) ? 3 : 0;
-    for (int round = 0; result == ORL_OK && better && round < ROUNDS_MAX && !is_over(s);
-         round++) {
+    for (int round = 0; better && round < ROUNDS_MAX && !is_over(s); round++) {
         better = false;
-        for (const struct orl_render_option *o = orl_render_options; result == ORL_OK && o->key; o++)
+        for (const struct orl_render_option *o = orl_render_options; o->key; o++)
             if (is_chosen(s, o, keys))
-                result = move_number(s, o, &better);
+                ORL_TRY(move_number(s, o, &better));
     }
     s->complete = !is_over(s);
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result check_keys(const struct orl_log *log, const struct orl_names *keys)

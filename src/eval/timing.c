@@ -47,14 +47,13 @@ static enum orl_result draw(const struct orl_timing_params *params, size_t numbe
 static enum orl_result take_frames(const struct orl_timing_params *params, double *ms,
                                    double *cpu_ms, struct orl_timing *timing)
 {
-    enum orl_result result = ORL_OK;
     double start = orl_time_s();
-    for (; result == ORL_OK && !is_enough(params, timing->frames, start); timing->frames++)
-        result = draw(params, timing->frames, &ms[timing->frames], &cpu_ms[timing->frames]);
+    for (; !is_enough(params, timing->frames, start); timing->frames++)
+        ORL_TRY(draw(params, timing->frames, &ms[timing->frames], &cpu_ms[timing->frames]));
     timing->median_ms = orl_median(ms, timing->frames); // sorts
     timing->cpu_ms = orl_median(cpu_ms, timing->frames);
     timing->slowest_ms = ms[timing->frames - 1];
-    return result;
+    return ORL_OK;
 }
 
 struct orl_timing_pass *orl_timing_pass(struct orl_timing_pass *passes, size_t *count,

@@ -73,8 +73,7 @@ static enum orl_result start(struct trim_search *s)
     struct trim_source *source = &s->source;
     const struct orl_trim_params *p = s->params;
     size_t photos = source->scene->photo_count;
-    enum orl_result result =
-        orl_validation_load(source->log, source->scene, 0, p->size_divide, &s->targets);
+    ORL_TRY(orl_validation_load(source->log, source->scene, 0, p->size_divide, &s->targets));
     size_t n = s->targets.count;
     s->first = orl_array(source->log, n, sizeof *s->first);
     s->now.score = orl_array(source->log, n, sizeof *s->now.score);
@@ -83,18 +82,14 @@ static enum orl_result start(struct trim_search *s)
     s->worst_db = orl_trim_has_budget(s) ? INFINITY : p->worst_db;
     s->first_state.render = p->start->params;
     s->first_state.removed = orl_array(source->log, photos, sizeof *s->first_state.removed);
-    if (result == ORL_OK &&
-        !(s->first && s->now.score && s->first_state.removed))
-        result = ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress, &source->ranking));
-    ORL_THEN(result, orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state));
-    ORL_THEN(result, orl_trim_order_photos(s));
-    ORL_THEN(result, orl_trim_model_open(source, &s->now.state, &s->model));
+    ORL_TRY_MEMORY(s->first && s->now.score && s->first_state.removed);
+    ORL_TRY(orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress, &source->ranking));
+    ORL_TRY(orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state));
+    ORL_TRY(orl_trim_order_photos(s));
+    ORL_TRY(orl_trim_model_open(source, &s->now.state, &s->model));
     orl_trim_plan(s);
-    ORL_THEN(result, orl_trim_measure_all(s, true, &s->trim->before));
-    ORL_THEN(result, orl_trim_time_first(s));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_trim_measure_all(s, true, &s->trim->before));
+    ORL_TRY(orl_trim_time_first(s));
     s->now.bytes = orl_trim_model_bytes(s, s->model, &s->now.state);
     s->now.slower = 1;
     s->trim->before.frame_ms = s->first_ms;
@@ -124,25 +119,22 @@ static enum orl_result write_and_look(struct trim_search *s)
     trim->choice.params = s->now.state.render;
     orl_trim_model_close(&s->model); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
-    enum orl_result result =
-        look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before);
-    ORL_THEN(result, orl_trim_write_scene(&s->source, &s->now.state, &trim->choice, s->part));
-    ORL_THEN(result, look_at(s, s->part, &s->now.state.render, &trim->after));
-    return result;
+    ORL_TRY(look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before));
+    ORL_TRY(orl_trim_write_scene(&s->source, &s->now.state, &trim->choice, s->part));
+    return look_at(s, s->part, &s->now.state.render, &trim->after);
 }
 
 static enum orl_result run(struct trim_search *s)
 {
-    enum orl_result result = start(s);
-    if (result == ORL_OK && s->params->tune)
-        result = tune(s);
-    ORL_THEN(result, orl_trim_climb(s));
-    ORL_THEN(result, orl_trim_make_faster(s));
-    ORL_THEN(result, orl_trim_confirm(s));
-    ORL_THEN(result, write_and_look(s));
-    if (result == ORL_OK)
-        orl_progress_report(s->params->progress, "trim", 1, 1, NULL);
-    return result;
+    ORL_TRY(start(s));
+    if (s->params->tune)
+        ORL_TRY(tune(s));
+    ORL_TRY(orl_trim_climb(s));
+    ORL_TRY(orl_trim_make_faster(s));
+    ORL_TRY(orl_trim_confirm(s));
+    ORL_TRY(write_and_look(s));
+    orl_progress_report(s->params->progress, "trim", 1, 1, NULL);
+    return ORL_OK;
 }
 
 static void finish(struct trim_search *s)

@@ -207,13 +207,11 @@ static bool is_timed(const struct trim_search *s, const struct trim_trial *t, bo
 static enum orl_result decide(struct trim_search *s, struct trim_trial *t, bool shares,
                               double share, bool *taken)
 {
-    enum orl_result result = orl_trim_trial_measure(s, t, shares);
-    bool fits = result == ORL_OK && orl_trim_trial_fits(s, t, share);
     *taken = false;
-    if (result == ORL_OK && is_timed(s, t, fits))
-        result = orl_trim_time_trial(s, t);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_trim_trial_measure(s, t, shares));
+    bool fits = orl_trim_trial_fits(s, t, share);
+    if (is_timed(s, t, fits))
+        ORL_TRY(orl_trim_time_trial(s, t));
     *taken = fits && is_wanted(s, t);
     orl_trim_trial_log(s, t, *taken);
     return *taken ? orl_trim_trial_take(s, t) : ORL_OK;
@@ -279,41 +277,38 @@ static bool ends(struct trim_search *s)
 
 static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
 {
-    enum orl_result result = ORL_OK;
     size_t low = level_of(&s->now.state, rung->part), high = max_level(s, rung);
-    for (int i = 0; result == ORL_OK && low < high && i < BISECTIONS && !ends(s); i++) {
+    for (int i = 0; low < high && i < BISECTIONS && !ends(s); i++) {
         size_t level = (low + high + 1) / 2;
         bool taken;
-        result = try_level(s, rung, level, &taken);
+        ORL_TRY(try_level(s, rung, level, &taken));
         if (taken)
             low = level;
         else
             high = level - 1;
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result climb_levels(struct trim_search *s, const struct rung *rung, size_t by)
 {
-    enum orl_result result = ORL_OK;
     bool taken = true;
     for (size_t level = level_of(&s->now.state, rung->part) + by;
-         result == ORL_OK && taken && level <= max_level(s, rung) && !ends(s); level += by)
+         taken && level <= max_level(s, rung) && !ends(s); level += by)
         if (has_level(s, rung, level))
-            result = try_level(s, rung, level, &taken);
-    return result;
+            ORL_TRY(try_level(s, rung, level, &taken));
+    return ORL_OK;
 }
 
 // Ends early when a frame is as fast as it should be, if that is what is wanted.
 static enum orl_result climb_options(struct trim_search *s, bool until_fast)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(cheaper); i++) {
+    for (size_t i = 0; i < ORL_COUNT(cheaper); i++) {
         if (until_fast ? s->now.slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s))
             break;
-        result = try_option(s, cheaper[i]);
+        ORL_TRY(try_option(s, cheaper[i]));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result climb_rung(struct trim_search *s, const struct rung *rung)
@@ -323,43 +318,39 @@ static enum orl_result climb_rung(struct trim_search *s, const struct rung *rung
         return climb_options(s, false);
     if (many && !orl_trim_has_budget(s))
         return bisect(s, rung);
-    enum orl_result result =
-        climb_levels(s, rung, many ? max_level(s, rung) / BUDGET_DIVIDE + 1 : 1);
+    ORL_TRY(climb_levels(s, rung, many ? max_level(s, rung) / BUDGET_DIVIDE + 1 : 1));
     bool textures = rung->part == ORL_TRIM_TEXTURES && !orl_trim_has_budget(s);
-    return result == ORL_OK && textures ? climb_options(s, true) : result;
+    return textures ? climb_options(s, true) : ORL_OK;
 }
 
 static enum orl_result climb_ladder(struct trim_search *s)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(ladder) && !ends(s); i++) {
+    for (size_t i = 0; i < ORL_COUNT(ladder) && !ends(s); i++) {
         orl_progress_report(s->params->progress, "trim", (double)i, (double)ORL_COUNT(ladder),
                             orl_trim_part_names[ladder[i].part]);
-        result = climb_rung(s, &ladder[i]);
+        ORL_TRY(climb_rung(s, &ladder[i]));
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_trim_climb(struct trim_search *s)
 {
-    enum orl_result result = ORL_OK;
     s->trim->complete = true;
     if (!orl_trim_has_budget(s))
         return climb_ladder(s);
     s->worst_db = INFINITY;
-    for (double db = budget_first_db; result == ORL_OK && !ends(s) && db < budget_last_db;
-         db *= budget_growth) {
+    for (double db = budget_first_db; !ends(s) && db < budget_last_db; db *= budget_growth) {
         s->tolerance_db = db;
         s->tolerance_ssim = ssim_per_db * db;
-        result = climb_ladder(s);
+        ORL_TRY(climb_ladder(s));
     }
     s->tolerance_db = s->tolerance_ssim = INFINITY; // nothing is taken back
-    if (result == ORL_OK && s->trim->complete && !within_budget(s))
-        result = orl_fail(s->source.log, ORL_ERR_DATA,
-                          "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
-                          "than is allowed", s->source.scene->dir, s->now.bytes / (1 << 20),
-                          s->first_ms * s->now.slower);
-    return result;
+    if (s->trim->complete && !within_budget(s))
+        return orl_fail(s->source.log, ORL_ERR_DATA,
+                        "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
+                        "than is allowed", s->source.scene->dir, s->now.bytes / (1 << 20),
+                        s->first_ms * s->now.slower);
+    return ORL_OK;
 }
 
 // --- the time of a frame ---
@@ -380,16 +371,16 @@ static enum orl_result drop_textures(struct trim_search *s)
 enum orl_result orl_trim_make_faster(struct trim_search *s)
 {
     bool slow;
-    enum orl_result result = orl_trim_time_whole(s, &slow);
-    if (result == ORL_OK && slow)
-        result = climb_options(s, true);
-    if (result == ORL_OK && slow)
-        result = orl_trim_time_whole(s, &slow);
-    if (result == ORL_OK && slow && s->now.state.textures != ORL_TEXTURES_AUTO) {
-        result = drop_textures(s);
-        ORL_THEN(result, orl_trim_time_whole(s, &slow));
+    ORL_TRY(orl_trim_time_whole(s, &slow));
+    if (slow) {
+        ORL_TRY(climb_options(s, true));
+        ORL_TRY(orl_trim_time_whole(s, &slow));
     }
-    return result;
+    if (slow && s->now.state.textures != ORL_TEXTURES_AUTO) {
+        ORL_TRY(drop_textures(s));
+        ORL_TRY(orl_trim_time_whole(s, &slow));
+    }
+    return ORL_OK;
 }
 
 // --- tuned options ---

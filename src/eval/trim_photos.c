@@ -116,20 +116,19 @@ static void put_back(struct trim_state *state, size_t photo)
 
 enum orl_result orl_trim_put_back(struct trim_search *s, struct trim_state *state)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++) {
+    for (size_t i = 0; i < s->targets.count; i++) {
         size_t photo = s->targets.views[i].photo;
         double loss = 0;
         if (!state->removed[photo])
             continue;
         struct neighbours near = nearest_left(s, state->removed, i);
-        for (int k = 0; result == ORL_OK && k < NEAREST && loss <= between_max_db; k++)
+        for (int k = 0; k < NEAREST && loss <= between_max_db; k++)
             if (near.target[k] != i)
-                result = between_loss(s, state, i, near.target[k], &loss);
+                ORL_TRY(between_loss(s, state, i, near.target[k], &loss));
         if (loss > between_max_db)
             put_back(state, photo);
     }
-    return result;
+    return ORL_OK;
 }
 
 // The target of a removed photograph that is nearest to a view; the number of targets: none is.

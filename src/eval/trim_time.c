@@ -56,12 +56,11 @@ static enum orl_result time_one(void *priv, bool second, double *ms)
 // The first frame of each view reads the photographs that the view is painted from.
 static enum orl_result warm_up(struct pair *pair)
 {
-    enum orl_result result = ORL_OK;
     double unused;
-    for (size_t k = 0; result == ORL_OK && k < pair->s->validation_count; k++)
-        for (int i = 0; result == ORL_OK && i < 2; i++)
-            result = time_frame(pair->s, &pair->drawn[i], k, &unused);
-    return result;
+    for (size_t k = 0; k < pair->s->validation_count; k++)
+        for (int i = 0; i < 2; i++)
+            ORL_TRY(time_frame(pair->s, &pair->drawn[i], k, &unused));
+    return ORL_OK;
 }
 
 static enum orl_result compare(struct pair *pair, double limit, double error, size_t rounds_max,
@@ -69,13 +68,12 @@ static enum orl_result compare(struct pair *pair, double limit, double error, si
 {
     const struct orl_pair_timing_params params = {.time = time_one, .priv = pair, .limit = limit,
                                                   .error = error, .rounds_max = rounds_max};
-    enum orl_result result = warm_up(pair);
-    ORL_THEN(result, orl_pair_timing_take(&params, timing));
-    if (result == ORL_OK)
-        orl_logf(pair->s->source.log, ORL_LOG_DEBUG,
-                 "frames take %.3f times as long (standard error %.1f %%, limit %.3f), %zu rounds",
-                 timing->ratio, 100 * timing->error, limit, timing->rounds);
-    return result;
+    ORL_TRY(warm_up(pair));
+    ORL_TRY(orl_pair_timing_take(&params, timing));
+    orl_logf(pair->s->source.log, ORL_LOG_DEBUG,
+             "frames take %.3f times as long (standard error %.1f %%, limit %.3f), %zu rounds",
+             timing->ratio, 100 * timing->error, limit, timing->rounds);
+    return ORL_OK;
 }
 
 double orl_trim_slow_limit(const struct trim_search *s)
@@ -89,12 +87,11 @@ enum orl_result orl_trim_time_first(struct trim_search *s)
     double ms[FRAMES_FIRST];
     const struct trim_drawn drawn = {s->model->renderer, &s->now.state};
     struct pair same = {s, {drawn, drawn}, 0};
-    enum orl_result result = warm_up(&same);
-    for (size_t i = 0; result == ORL_OK && i < FRAMES_FIRST; i++)
-        result = time_frame(s, &drawn, i, &ms[i]);
-    if (result == ORL_OK)
-        s->first_ms = orl_median(ms, FRAMES_FIRST);
-    return result;
+    ORL_TRY(warm_up(&same));
+    for (size_t i = 0; i < FRAMES_FIRST; i++)
+        ORL_TRY(time_frame(s, &drawn, i, &ms[i]));
+    s->first_ms = orl_median(ms, FRAMES_FIRST);
+    return ORL_OK;
 }
 
 enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)

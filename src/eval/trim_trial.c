@@ -16,12 +16,10 @@ static enum orl_result measure_view(struct trim_search *s, struct orl_renderer *
     struct orl_metrics m;
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
-    enum orl_result result =
-        orl_validation_compare(s->source.log, renderer, &s->targets, view, &state->render,
-                               state->removed, true, &m);
-    if (result == ORL_OK)
-        *score = (struct trim_score){m.psnr_db, m.ssim};
-    return result;
+    ORL_TRY(orl_validation_compare(s->source.log, renderer, &s->targets, view, &state->render,
+                                   state->removed, true, &m));
+    *score = (struct trim_score){m.psnr_db, m.ssim};
+    return ORL_OK;
 }
 
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
@@ -104,18 +102,17 @@ static bool is_open(const struct trim_search *s, const struct trim_trial *t)
 enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial *t, bool shares)
 {
     ORL_TRY(shares ? ORL_OK : orl_trim_model_open(&s->source, &t->now.state, &t->own));
-    enum orl_result result = ORL_OK;
     const struct trim_model *model = shares ? s->model : t->own;
     t->now.bytes = orl_trim_model_bytes(s, model, &t->now.state);
-    for (size_t i = 0; result == ORL_OK && i < s->validation_count; i++) {
+    for (size_t i = 0; i < s->validation_count; i++) {
         size_t deciding = (2 * i + 1) * s->deciding_count / (2 * s->validation_count);
-        result = measure_one(s, t, orl_trim_validation_view(s, deciding, s->deciding_count));
+        ORL_TRY(measure_one(s, t, orl_trim_validation_view(s, deciding, s->deciding_count)));
     }
     set_losses(s, t);
-    for (size_t i = 0; result == ORL_OK && is_open(s, t) && i < s->deciding_count; i++)
-        result = measure_one(s, t, orl_trim_validation_view(s, i, s->deciding_count));
+    for (size_t i = 0; is_open(s, t) && i < s->deciding_count; i++)
+        ORL_TRY(measure_one(s, t, orl_trim_validation_view(s, i, s->deciding_count)));
     set_losses(s, t);
-    return result;
+    return ORL_OK;
 }
 
 bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t, double share)
@@ -170,13 +167,12 @@ enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t)
 enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
                                      struct orl_trim_figures *figures)
 {
-    enum orl_result result = ORL_OK;
     double n = (double)s->targets.count;
     *figures = (struct orl_trim_figures){.frame_ms = figures->frame_ms};
-    for (size_t i = 0; result == ORL_OK && i < s->targets.count; i++) {
+    for (size_t i = 0; i < s->targets.count; i++) {
         orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
                             (double)i, n, NULL);
-        result = measure_view(s, s->model->renderer, &s->now.state, i, &s->now.score[i]);
+        ORL_TRY(measure_view(s, s->model->renderer, &s->now.state, i, &s->now.score[i]));
         if (first)
             s->first[i] = s->now.score[i];
         figures->psnr_db += s->now.score[i].db / n;
@@ -189,7 +185,7 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
     figures->point_bytes = s->model->point_bytes;
     figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->now.state) -
                            s->model->point_bytes;
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result take_back(struct trim_search *s)

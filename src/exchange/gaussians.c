@@ -203,21 +203,20 @@ static void solve(const struct fit *fit, size_t point)
 
 static enum orl_result fit_batch(struct fit *fit, const struct orl_progress *progress)
 {
-    enum orl_result result = ORL_OK;
     size_t photos = fit->scene->photo_count, all = fit->scene->points.count;
     memset(fit->sums, 0, (fit->end - fit->first) * sizeof *fit->sums);
-    for (size_t i = 0; result == ORL_OK && i < photos; i++) {
+    for (size_t i = 0; i < photos; i++) {
         if (orl_progress_cancelled(progress))
             return ORL_ERR_CANCELLED;
         if (!fit->scene->photos[i].test)
-            result = add_photo(fit, i);
+            ORL_TRY(add_photo(fit, i));
         double part = (double)(fit->end - fit->first) * (double)(i + 1) / (double)photos;
         orl_progress_report(progress, "colours", (double)fit->first + part, (double)all,
                             fit->scene->photos[i].name);
     }
-    for (size_t i = fit->first; result == ORL_OK && i < fit->end; i++)
+    for (size_t i = fit->first; i < fit->end; i++)
         solve(fit, i);
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_gaussians_fit(const struct orl_log *log, const struct orl_progress *progress,

@@ -231,10 +231,9 @@ static enum orl_result panorama_images(const struct orl_log *log, const struct o
     struct orl_image *const images[] = {&frame->color, &frame->depth, &frame->normal,
                                         &frame->coverage, &frame->confidence};
     static const int channels[] = {3, 1, 3, 1, 1};
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(images); i++)
-        result = orl_image_init(log, images[i], p->width, p->height, channels[i], ORL_PIXEL_F32);
-    return result;
+    for (size_t i = 0; i < ORL_COUNT(images); i++)
+        ORL_TRY(orl_image_init(log, images[i], p->width, p->height, channels[i], ORL_PIXEL_F32));
+    return ORL_OK;
 }
 
 enum orl_result orl_hdr_draw_panorama(struct orl_hdr *hdr, const struct orl_panorama *p,

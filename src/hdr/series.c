@@ -57,17 +57,14 @@ enum orl_result orl_series_init(struct orl_gpu *gpu, const struct orl_scene *sce
                                 const struct orl_hdr_params *params, struct series_set *set)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    enum orl_result result = ORL_OK;
     set->scene = *scene;
     set->scene.photos = orl_array(log, scene->photo_count, sizeof *scene->photos);
     set->items = orl_array(log, scene->photo_count, sizeof *set->items);
     ORL_TRY_MEMORY(set->scene.photos && set->items);
     memcpy(set->scene.photos, scene->photos, scene->photo_count * sizeof *scene->photos);
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
+    for (size_t i = 0; i < scene->photo_count; i++)
         if (in_use(params, scene, i))
-            result = add_photo(log, set, i);
-    if (result != ORL_OK)
-        return result;
+            ORL_TRY(add_photo(log, set, i));
     set->least_ev = INFINITY;
     set->most_ev = -INFINITY;
     for (size_t k = 0; k < set->count; k++) {

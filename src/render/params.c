@@ -146,25 +146,20 @@ enum orl_result orl_render_params_assign(const struct orl_log *log,
     const struct orl_render_option *option;
     struct orl_render_params changed = *params;
     for (size_t i = 0; i < count; i++) {
-        enum orl_result result = find_key(log, assignments[i], &option);
-        ORL_THEN(result, set_value(log, option, assignments[i] + strlen(option->key) + 1, &changed));
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(find_key(log, assignments[i], &option));
+        ORL_TRY(set_value(log, option, assignments[i] + strlen(option->key) + 1, &changed));
     }
     // Checked after all assignments, since a later one may choose what reads an option.
     for (size_t i = 0; i < count; i++) {
-        enum orl_result result = find_key(log, assignments[i], &option);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(find_key(log, assignments[i], &option));
         if (!orl_render_option_read(option, &changed))
             return orl_fail(log, ORL_ERR_ARGUMENT,
                             "%s: this method does not read it; it belongs to: %s", assignments[i],
                             option->readers);
     }
-    enum orl_result result = orl_render_params_check(log, &changed);
-    if (result == ORL_OK)
-        *params = changed;
-    return result;
+    ORL_TRY(orl_render_params_check(log, &changed));
+    *params = changed;
+    return ORL_OK;
 }
 
 enum orl_result orl_render_params_set(const struct orl_log *log, struct orl_render_params *params,

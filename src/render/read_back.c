@@ -29,12 +29,10 @@ static size_t pixel_count(const struct frame *frame)
 static enum orl_result read_color(const struct frame *frame, bool coverage,
                                   struct orl_image *staging, struct orl_frame *out)
 {
-    enum orl_result result = make(frame, 3, &out->color);
-    if (result == ORL_OK && coverage)
-        result = make(frame, 1, &out->coverage);
-    ORL_THEN(result, stage(frame, 4, staging));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(make(frame, 3, &out->color));
+    if (coverage)
+        ORL_TRY(make(frame, 1, &out->coverage));
+    ORL_TRY(stage(frame, 4, staging));
     const float *rgba = staging->f32;
     orl_tex_read(frame->picture, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(staging), staging->f32);
     for (size_t i = 0; i < pixel_count(frame); i++) {
@@ -47,9 +45,7 @@ static enum orl_result read_color(const struct frame *frame, bool coverage,
 
 static enum orl_result read_depth(const struct frame *frame, struct orl_frame *out)
 {
-    enum orl_result result = make(frame, 1, &out->depth);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(make(frame, 1, &out->depth));
     float *depth = out->depth.f32;
     orl_tex_read(frame->surface.depth, 0, GL_RED, GL_FLOAT, orl_image_bytes(&out->depth), depth);
     for (size_t i = 0; i < pixel_count(frame); i++)
@@ -60,20 +56,17 @@ static enum orl_result read_depth(const struct frame *frame, struct orl_frame *o
 
 static enum orl_result read_normal(const struct frame *frame, struct orl_frame *out)
 {
-    enum orl_result result = make(frame, 3, &out->normal);
-    if (result == ORL_OK)
-        orl_tex_read(frame->surface.normal, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&out->normal),
-                     out->normal.f32);
-    return result;
+    ORL_TRY(make(frame, 3, &out->normal));
+    orl_tex_read(frame->surface.normal, 0, GL_RGB, GL_FLOAT, orl_image_bytes(&out->normal),
+                 out->normal.f32);
+    return ORL_OK;
 }
 
 static enum orl_result read_confidence(const struct frame *frame, struct orl_image *staging,
                                        struct orl_frame *out)
 {
-    enum orl_result result = make(frame, 1, &out->confidence);
-    ORL_THEN(result, stage(frame, 2, staging));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(make(frame, 1, &out->confidence));
+    ORL_TRY(stage(frame, 2, staging));
     const float *sums = staging->f32;
     orl_tex_read(frame->paint->trusted, 0, GL_RG, GL_FLOAT, orl_image_bytes(staging), staging->f32);
     for (size_t i = 0; i < pixel_count(frame); i++)
@@ -85,13 +78,12 @@ enum orl_result orl_read_back(const struct frame *frame, struct orl_image *stagi
                               struct orl_frame *out)
 {
     unsigned leave_out = frame->params->leave_out;
-    enum orl_result result =
-        read_color(frame, !(leave_out & ORL_LAYER_COVERAGE), staging, out);
-    if (result == ORL_OK && !(leave_out & ORL_LAYER_DEPTH))
-        result = read_depth(frame, out);
-    if (result == ORL_OK && !(leave_out & ORL_LAYER_NORMAL))
-        result = read_normal(frame, out);
-    if (result == ORL_OK && frame->paint->trusted && !(leave_out & ORL_LAYER_CONFIDENCE))
-        result = read_confidence(frame, staging, out);
-    return result;
+    ORL_TRY(read_color(frame, !(leave_out & ORL_LAYER_COVERAGE), staging, out));
+    if (!(leave_out & ORL_LAYER_DEPTH))
+        ORL_TRY(read_depth(frame, out));
+    if (!(leave_out & ORL_LAYER_NORMAL))
+        ORL_TRY(read_normal(frame, out));
+    if (frame->paint->trusted && !(leave_out & ORL_LAYER_CONFIDENCE))
+        ORL_TRY(read_confidence(frame, staging, out));
+    return ORL_OK;
 }

@@ -70,10 +70,9 @@ static enum orl_result find_proxy(struct orl_renderer *r, const struct orl_proxy
     }
     ORL_REQUIRE(orl_gpu_log(r->gpu), r->proxy_count < PROXIES_MAX);
     *proxy = &r->proxies[r->proxy_count];
-    enum orl_result result = orl_proxy_create(r->gpu, r->scene, kind, r->point_bytes, *proxy);
-    if (result == ORL_OK)
-        r->proxy_count++;
-    return result;
+    ORL_TRY(orl_proxy_create(r->gpu, r->scene, kind, r->point_bytes, *proxy));
+    r->proxy_count++;
+    return ORL_OK;
 }
 
 enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -85,8 +84,7 @@ enum orl_result orl_renderer_create(struct orl_gpu *gpu, const struct orl_scene 
     *out = NULL;
     params = params ? params : &defaults;
     struct orl_renderer *r = orl_array(log, 1, sizeof *r);
-    if (!r)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(r);
     r->gpu = gpu;
     r->scene = scene;
     r->expected = -1;
@@ -140,13 +138,12 @@ size_t orl_renderer_uploaded(const struct orl_renderer *renderer)
 
 static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
 {
-    enum orl_result result = orl_paint_resize(frame);
-    ORL_THEN(result, orl_frame_target(frame, "accumulated colour", true,
-                                      frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture));
-    ORL_THEN(result, orl_room_resize(frame, &r->room));
-    ORL_THEN(result, orl_frame_target(frame, "mean of pictures", orl_reconstruction_count(frame) > 1,
-                                      GL_RGBA32F, &r->mean));
-    return result;
+    ORL_TRY(orl_paint_resize(frame));
+    ORL_TRY(orl_frame_target(frame, "accumulated colour", true,
+                             frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture));
+    ORL_TRY(orl_room_resize(frame, &r->room));
+    return orl_frame_target(frame, "mean of pictures", orl_reconstruction_count(frame) > 1,
+                            GL_RGBA32F, &r->mean);
 }
 
 // Draws the surface that the view sees. `params`: the frame's, or those of one reconstruction.
@@ -162,28 +159,24 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
     const struct orl_painter *painter = frame->params->paint;
     const bool room = orl_frame_shows_room(frame);
     size_t absent = 0;
-    enum orl_result result = draw_surface(frame, params);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(draw_surface(frame, params));
     if (orl_frame_guesses(frame) && painter != &orl_paint_points)
         orl_fill_depth(frame);
     if (room)
-        result = orl_room_paint(frame, &r->room, &absent);
-    ORL_THEN(result, painter->paint(frame));
+        ORL_TRY(orl_room_paint(frame, &r->room, &absent));
+    ORL_TRY(painter->paint(frame));
     if (frame->progressive) // those that came with this frame are in the next one's room
         frame->progressive->missing += absent;
-    if (result == ORL_OK && room)
+    if (room)
         orl_room_show(frame, &r->room);
-    for (const struct post_pass *pass = orl_post_passes; result == ORL_OK && pass->name; pass++) {
+    for (const struct post_pass *pass = orl_post_passes; pass->name; pass++) {
         if (!pass->applies(frame))
             continue;
         orl_pass_begin(frame->gpu, pass->name);
         pass->run(frame);
         orl_pass_end(frame->gpu);
     }
-    if (result == ORL_OK && frame->soft)
-        result = orl_soft_layer_mix(frame);
-    return result;
+    return frame->soft ? orl_soft_layer_mix(frame) : ORL_OK;
 }
 
 static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool normals)
@@ -269,18 +262,14 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     if (!orl_camera_valid(&view->camera))
         return orl_fail(log, ORL_ERR_ARGUMENT, "this camera cannot be rendered: %dx%d, focal %g %g",
                         view->camera.width, view->camera.height, view->camera.fx, view->camera.fy);
-    enum orl_result result = orl_render_params_check(log, params);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_render_params_check(log, params));
     struct proxy *proxy;
     struct prefetch *next = NULL;
-    result = find_proxy(r, params->proxy, &proxy);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(find_proxy(r, params->proxy, &proxy));
     struct frame frame = start_frame(r, proxy, view, params, skip);
     frame.progressive = progressive;
     frame.soft = orl_soft_layer_shows(&frame) ? &r->paint.soft : NULL;
-    result = ready_frame(r, &frame);
+    enum orl_result result = ready_frame(r, &frame);
     if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
         result = orl_prefetch_create(&frame, r->expected, &next);
     ORL_THEN(result, finish_frame(r, &frame, out && !(params->leave_out & ORL_LAYER_NORMAL), next, out));

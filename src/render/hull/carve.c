@@ -30,9 +30,7 @@ static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
     const struct orl_tex_params params = {.width = cone->distance.width,
                                           .height = cone->distance.height, .format = GL_R32F,
                                           .linear = true, .tag = "silhouette"};
-    enum orl_result result = orl_tex_create(gpu, &params, &tex);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_tex_create(gpu, &params, &tex));
     orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, cone->distance.data);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL),
                              .params = block, .params_size = sizeof *block,
@@ -52,13 +50,11 @@ enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones, 
     size_t voxels = (size_t)side * (size_t)side * (size_t)side;
     uint32_t word;
     *field = NULL;
-    enum orl_result result = orl_buf_create(gpu, ORL_OWNER_FRAME, "voxels",
-                                            voxels * sizeof(float), NULL, field);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_FRAME, "voxels", voxels * sizeof(float), NULL, field));
     memcpy(&word, &unlimited, sizeof word);
     orl_buf_fill(*field, word);
     double voxel = cones->bounds.size / side;
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < cones->count; i++) {
         struct carve_block block =
             carve_params(&cones->all[i], cones->bounds.origin, voxel, side);

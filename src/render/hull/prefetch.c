@@ -132,8 +132,7 @@ enum orl_result orl_prefetch_create(const struct frame *frame, int time_step, st
     size_t count = frame->scene->photo_count;
     struct prefetch *a = orl_array(log, 1, sizeof *a);
     *out = a;
-    if (!a)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(a);
     a->scene = *frame->scene;
     a->scene.photos = orl_array(log, count, sizeof *a->scene.photos);
     a->mask = orl_array(log, count, sizeof *a->mask);

@@ -47,20 +47,19 @@ static enum orl_result make(const struct frame *frame, struct voxel_state *state
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct voxels *voxels = &state->voxels;
     struct orl_mesh *mesh = hull ? &state->mesh.mesh : NULL;
-    enum orl_result result = ORL_OK;
     if (hull && !orl_voxels_silhouettes(frame))
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: no silhouettes to make a hull of; see oriel import",
                         frame->scene->dir);
     if (!orl_prefetch_take_hull(frame->gpu, state->prefetch, state->key, voxels, mesh)) {
-        result = orl_voxels_make(frame, voxels);
-        if (result == ORL_OK && hull)
-            result = orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh);
+        ORL_TRY(orl_voxels_make(frame, voxels));
+        if (hull)
+            ORL_TRY(orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh));
     }
     orl_voxels_warn(log, voxels, &state->said_endless);
-    if (result == ORL_OK && !hull && !voxels->count)
-        result = orl_fail(log, ORL_ERR_DATA, "%s: no voxel is left", frame->scene->dir);
-    return result;
+    if (!hull && !voxels->count)
+        return orl_fail(log, ORL_ERR_DATA, "%s: no voxel is left", frame->scene->dir);
+    return ORL_OK;
 }
 
 static enum orl_result upload(struct orl_gpu *gpu, struct voxel_state *state, bool hull)
@@ -164,10 +163,8 @@ static enum orl_result see_from(const struct frame *frame, struct voxel_state *s
     struct orl_view view = {.camera = frame->photos->states[photo].depth_camera,
                             .cam_from_world = frame->scene->photos[photo].view.cam_from_world};
     struct surface surface;
-    enum orl_result result = orl_proxy_draw(frame->gpu, proxy, &view, frame->params, false,
-                                            &proxy->photo_target, &surface);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_proxy_draw(frame->gpu, proxy, &view, frame->params, false,
+                           &proxy->photo_target, &surface));
     struct seen_block block = {.size = {surface.width, surface.height},
                                .voxel_count = (int)state->voxels.count,
                                .words = (int)state->words, .word = (int)(photo / 32),

@@ -78,10 +78,7 @@ enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *v)
             for (size_t x = 0; x < side; x++) {
                 if (!at_surface(v, x, y, z))
                     continue;
-                enum orl_result result = orl_grow(log, (void **)&v->centre, &capacity,
-                                                  v->count + 1, sizeof *v->centre);
-                if (result != ORL_OK)
-                    return result;
+                ORL_TRY(ORL_GROW(log, v->centre, capacity, v->count));
                 const double at[3] = {(double)x + 0.5, (double)y + 0.5, (double)z + 0.5};
                 for (int k = 0; k < 3; k++)
                     v->centre[v->count][k] = (float)(v->cube.origin[k] + v->cube.voxel * at[k]);
@@ -99,8 +96,7 @@ enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *c
                               .cube = {.side = side, .voxel = cones->bounds.size / side}};
     memcpy(voxels->cube.origin, cones->bounds.origin, sizeof voxels->cube.origin);
     voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
-    if (!voxels->field)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(voxels->field);
     orl_buf_read(field, 0, cells(side) * sizeof *voxels->field, voxels->field);
     return ORL_OK;
 }
@@ -137,10 +133,7 @@ static enum orl_result bound_points(const struct orl_log *log, const struct orl_
                                     struct orl_hull *cube)
 {
     double low[3] = {0}, high[3] = {0}, size = 0;
-    enum orl_result result =
-        orl_vertices_range(log, (const float (*)[3])points->position, points->count, 0.01, low, high);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_vertices_range(log, (const float (*)[3])points->position, points->count, 0.01, low, high));
     for (int k = 0; k < 3; k++)
         size = fmax(size, high[k] - low[k]);
     size = size > 0 ? 1.05 * size : 1;
@@ -212,8 +205,7 @@ enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels
                         "voxels of; see oriel import", scene->dir);
     }
     struct orl_silhouette *silhouettes = orl_array(log, scene->photo_count, sizeof *silhouettes);
-    if (!silhouettes)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(silhouettes);
     enum orl_result result = read_silhouettes(frame, silhouettes, &count);
     ORL_THEN(result, orl_voxels_carve(frame->gpu, silhouettes, count, orl_voxels_side(frame), voxels));
     for (size_t i = 0; i < count; i++)

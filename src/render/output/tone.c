@@ -61,16 +61,12 @@ static enum orl_result map_picture(const struct orl_log *log, const struct orl_i
                                    enum orl_tone_curve curve, struct orl_image *mapped)
 {
     struct orl_image cleaned;
-    enum orl_result result = orl_image_init(log, &cleaned, linear->width, linear->height, 3,
-                                            ORL_PIXEL_F32);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_image_init(log, &cleaned, linear->width, linear->height, 3, ORL_PIXEL_F32));
     size_t count = (size_t)linear->width * (size_t)linear->height * 3;
     for (size_t i = 0; i < count; i++)
         cleaned.f32[i] = clean(linear->f32[i]);
-    result = orl_bridge_tonemap(log, &cleaned,
-                                curve == ORL_TONE_DRAGO ? ORL_TONEMAP_DRAGO : ORL_TONEMAP_MANTIUK,
-                                mapped);
+    enum orl_result result = orl_bridge_tonemap(
+        log, &cleaned, curve == ORL_TONE_DRAGO ? ORL_TONEMAP_DRAGO : ORL_TONEMAP_MANTIUK, mapped);
     orl_image_finish(&cleaned);
     return result;
 }
@@ -82,11 +78,8 @@ enum orl_result orl_tone_apply(const struct orl_log *log, const struct orl_image
     ORL_REQUIRE(log, linear->type == ORL_PIXEL_F32 && linear->channels == 3 && linear->data);
     ORL_REQUIRE(log, params->curve >= 0 && params->curve < ORL_TONE_COUNT && params->white > 0);
     struct orl_image mapped = {0};
-    if (orl_tones[params->curve].whole_picture) {
-        enum orl_result result = map_picture(log, linear, params->curve, &mapped);
-        if (result != ORL_OK)
-            return result;
-    }
+    if (orl_tones[params->curve].whole_picture)
+        ORL_TRY(map_picture(log, linear, params->curve, &mapped));
     const float *light = mapped.data ? mapped.f32 : linear->f32;
     enum orl_result result = orl_image_init(log, srgb, linear->width, linear->height, 3,
                                             ORL_PIXEL_U8);

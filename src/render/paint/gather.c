@@ -227,11 +227,8 @@ static enum orl_result choose_radiance(const struct frame *frame, const struct g
                                        struct orl_dispatch d)
 {
     size_t across = d.groups[0], down = d.groups[1];
-    enum orl_result result =
-        orl_make_room(frame->gpu, "photographs of tiles",
-                      across * down * ORL_RADIANCE_LIST * sizeof(int), &frame->paint->gather.tile_lists);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles", across * down * ORL_RADIANCE_LIST * sizeof(int),
+                          &frame->paint->gather.tile_lists));
     d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", slots->slots, NULL);
     d.bufs[1].buf = frame->paint->gather.tile_lists;
     d.groups[0] = orl_groups(across, 8);
@@ -285,9 +282,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
     orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
     if (frame->radiance) {
-        enum orl_result result = choose_radiance(frame, &slots, d);
-        if (result != ORL_OK)
-            return result;
+        ORL_TRY(choose_radiance(frame, &slots, d));
         d.bufs[1].buf = frame->paint->gather.tile_lists;
     }
     orl_pass_begin(frame->gpu, "gather");
@@ -311,12 +306,9 @@ static enum orl_result sweep_over(const struct frame *frame, int sweep)
     bool depth = reads_depth(frame);
     for (size_t first = 0; first < frame->chosen_count; first += batch) {
         size_t left = frame->chosen_count - first, count = left < batch ? left : batch;
-        enum orl_result result = ORL_OK;
-        for (size_t i = 0; !frame->progressive && result == ORL_OK && i < count; i++)
-            result = orl_photos_require(frame, frame->chosen[first + i], depth);
-        ORL_THEN(result, gather(frame, first, count, sweep));
-        if (result != ORL_OK)
-            return result;
+        for (size_t i = 0; !frame->progressive && i < count; i++)
+            ORL_TRY(orl_photos_require(frame, frame->chosen[first + i], depth));
+        ORL_TRY(gather(frame, first, count, sweep));
     }
     return ORL_OK;
 }
@@ -348,13 +340,12 @@ static enum orl_result paint_gather(struct frame *frame)
 {
     int sweeps = frame->radiance ? 1 : frame->params->combine->sweeps;
     orl_gather_clear(frame);
-    enum orl_result result =
-        frame->params->select->choose(frame, (size_t)frame->photos->slot_count);
-    if (result == ORL_OK && frame->progressive)
-        result = orl_progressive_admit(frame, reads_depth(frame));
-    for (int sweep = 0; result == ORL_OK && sweep < sweeps; sweep++)
-        result = sweep_over(frame, sweep);
-    return result == ORL_OK ? orl_gather_underpaint(frame) : result;
+    ORL_TRY(frame->params->select->choose(frame, (size_t)frame->photos->slot_count));
+    if (frame->progressive)
+        ORL_TRY(orl_progressive_admit(frame, reads_depth(frame)));
+    for (int sweep = 0; sweep < sweeps; sweep++)
+        ORL_TRY(sweep_over(frame, sweep));
+    return orl_gather_underpaint(frame);
 }
 
 const struct orl_combine orl_combine_mean = {"mean", .sweeps = 1};

@@ -69,11 +69,10 @@ enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
     size_t bytes = cost_bytes(frame);
     if (!orl_guess_applies(frame))
         return ORL_OK;
-    enum orl_result result = orl_make_room(gpu, "costs of depths", bytes, &guess->costs);
-    ORL_THEN(result, orl_make_room(gpu, "costs of paths", bytes, &guess->sums));
-    ORL_THEN(result, resize_cells(gpu, "estimated depth", width, height, &guess->estimated));
-    ORL_THEN(result, resize_cells(gpu, "picked depth", width, height, &guess->picked));
-    return result;
+    ORL_TRY(orl_make_room(gpu, "costs of depths", bytes, &guess->costs));
+    ORL_TRY(orl_make_room(gpu, "costs of paths", bytes, &guess->sums));
+    ORL_TRY(resize_cells(gpu, "estimated depth", width, height, &guess->estimated));
+    return resize_cells(gpu, "picked depth", width, height, &guess->picked);
 }
 
 static struct orl_prog *program(const struct frame *frame, const char *file, const char *along)

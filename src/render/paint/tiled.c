@@ -11,14 +11,12 @@
 static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
 {
     struct gather *g = &frame->paint->gather;
-    enum orl_result result = orl_make_room(frame->gpu, "photographs of tiles",
-                                           tiles * CANDIDATES * sizeof(int), &g->tile_lists);
-    if (result == ORL_OK)
-        result = orl_make_room(frame->gpu, "groups with unfinished pixels", groups * sizeof(uint32_t),
-                               &g->unfinished);
-    if (result == ORL_OK)
-        orl_buf_fill(g->unfinished, 0);
-    return result;
+    ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles",
+                          tiles * CANDIDATES * sizeof(int), &g->tile_lists));
+    ORL_TRY(orl_make_room(frame->gpu, "groups with unfinished pixels", groups * sizeof(uint32_t),
+                          &g->unfinished));
+    orl_buf_fill(g->unfinished, 0);
+    return ORL_OK;
 }
 
 // For the passes that ask photographs. Without a backdrop that rests they lose no time.
@@ -60,9 +58,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     size_t down = orl_groups((size_t)frame->surface.height, orl_tile_side(frame));
     unsigned groups[3];
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, groups);
-    enum orl_result result = make_lists(frame, across * down, (size_t)groups[0] * groups[1]);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(make_lists(frame, across * down, (size_t)groups[0] * groups[1]));
     if (frame->chosen_count == 0 && !frame->progressive) {
         orl_tex_clear(frame->picture, 0);
         return ORL_OK;
@@ -92,16 +88,15 @@ static enum orl_result paint(struct frame *frame)
     if (frame->radiance)
         return orl_paint_gather.paint(frame);
     // Depth is always needed: the selection per tile tests occlusion even if the pixels do not.
-    enum orl_result result =
-        frame->params->select->choose(frame, (size_t)frame->photos->slot_count);
-    if (result == ORL_OK && frame->progressive)
-        result = orl_progressive_admit(frame, true);
-    for (size_t i = 0; !frame->progressive && result == ORL_OK && i < frame->chosen_count; i++)
-        result = orl_photos_require(frame, frame->chosen[i], true);
-    if (result == ORL_OK && frame->soft)
-        result = orl_soft_layer_ready(frame);
-    ORL_THEN(result, paint_chosen(frame));
-    return result == ORL_OK ? orl_gather_underpaint(frame) : result;
+    ORL_TRY(frame->params->select->choose(frame, (size_t)frame->photos->slot_count));
+    if (frame->progressive)
+        ORL_TRY(orl_progressive_admit(frame, true));
+    for (size_t i = 0; !frame->progressive && i < frame->chosen_count; i++)
+        ORL_TRY(orl_photos_require(frame, frame->chosen[i], true));
+    if (frame->soft)
+        ORL_TRY(orl_soft_layer_ready(frame));
+    ORL_TRY(paint_chosen(frame));
+    return orl_gather_underpaint(frame);
 }
 
 const struct orl_painter orl_paint_tiled = {

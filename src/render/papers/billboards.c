@@ -156,16 +156,14 @@ static void choose(struct frame *frame, struct ranked_photo *ranked, size_t coun
 // reads one mask: the others come with later frames.
 static enum orl_result bring(struct frame *frame, struct ranked_photo *ranked)
 {
-    enum orl_result result = orl_progressive_admit(frame, false);
     size_t kept = 0;
     bool has_read = false;
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_progressive_admit(frame, false));
     orl_rank_by_axis(frame->scene, frame->view, frame->chosen, frame->chosen_count, ranked);
-    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
+    for (size_t i = 0; i < frame->chosen_count; i++) {
         bool there = frame->photos->states[ranked[i].photo].has_mask;
         if (there || !has_read) {
-            result = orl_photos_require_mask(frame, ranked[i].photo);
+            ORL_TRY(orl_photos_require_mask(frame, ranked[i].photo));
             has_read = has_read || !there;
             ranked[kept++] = ranked[i];
         } else {
@@ -173,7 +171,7 @@ static enum orl_result bring(struct frame *frame, struct ranked_photo *ranked)
         }
     }
     choose(frame, ranked, kept);
-    return result;
+    return ORL_OK;
 }
 
 // Brings the photographs nearest by angle to the device, as many as fit, and leaves only these
@@ -184,12 +182,11 @@ static enum orl_result require(struct frame *frame, struct ranked_photo *ranked)
     choose(frame, ranked, frame->chosen_count < most ? frame->chosen_count : most);
     if (frame->progressive)
         return bring(frame, ranked);
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
-        result = orl_photos_require(frame, ranked[i].photo, false);
-        ORL_THEN(result, orl_photos_require_mask(frame, ranked[i].photo));
+    for (size_t i = 0; i < frame->chosen_count; i++) {
+        ORL_TRY(orl_photos_require(frame, ranked[i].photo, false));
+        ORL_TRY(orl_photos_require_mask(frame, ranked[i].photo));
     }
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result paint(struct frame *frame)

@@ -66,12 +66,11 @@ static void project(const struct frame *frame, struct orl_tex *room, bool backgr
 static enum orl_result require(const struct frame *frame, bool backgrounds, const size_t *photos,
                                size_t count)
 {
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        result = backgrounds ? orl_photos_require_background(frame, photos[i])
-                             : orl_photos_require(frame, photos[i], true);
+    for (size_t i = 0; i < count; i++) {
+        ORL_TRY(backgrounds ? orl_photos_require_background(frame, photos[i])
+                            : orl_photos_require(frame, photos[i], true));
     }
-    return result;
+    return ORL_OK;
 }
 
 // For a progressive frame: keeps the photographs that are on the device, to which the painter
@@ -80,14 +79,13 @@ static enum orl_result keep_present(struct frame *frame, bool backgrounds, size_
 {
     size_t kept = 0;
     bool has_read = false;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < frame->chosen_count; i++) {
+    for (size_t i = 0; i < frame->chosen_count; i++) {
         size_t photo = frame->chosen[i];
         bool there = frame->photos->states[photo].has_color;
         if (there && backgrounds && !orl_photos_has_background(frame->photos, photo)) {
             there = !has_read;
             has_read = true;
-            result = there ? orl_photos_require_background(frame, photo) : ORL_OK;
+            ORL_TRY(there ? orl_photos_require_background(frame, photo) : ORL_OK);
         }
         int divide = there && !backgrounds ? orl_photos_depth_divide(frame, photo) : 1;
         if (there && divide > 0)
@@ -95,7 +93,7 @@ static enum orl_result keep_present(struct frame *frame, bool backgrounds, size_
         *absent += !there || divide != 1;
     }
     frame->chosen_count = kept;
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *absent)

@@ -85,8 +85,7 @@ enum orl_result orl_photo_loader_create(const struct orl_log *log, const struct 
 {
     struct photo_loader *l = orl_array(log, 1, sizeof *l);
     *out = NULL;
-    if (!l)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(l);
     l->log = log;
     l->scene = scene;
     l->linear = linear;

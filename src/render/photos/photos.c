@@ -206,8 +206,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     photos->sensor = params->sensor ? *params->sensor
                                     : (struct orl_sensor){ORL_SENSOR_DEFAULTS};
     photos->states = orl_array(log, scene->photo_count, sizeof *photos->states);
-    if (!photos->states)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(photos->states);
     for (size_t i = 0; i < scene->photo_count; i++) {
         photos->states[i].usable = use ? use[i] : !scene->photos[i].test;
         photos->states[i].slot = -1;
@@ -247,12 +246,11 @@ enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos)
     const struct slot_size size = {.width = photos->color_params.width,
                                    .height = photos->color_params.height};
     const struct orl_tex_params chroma = color_params(photos, &size, true);
-    enum orl_result result = ORL_OK;
     if (!photos->color)
-        result = orl_tex_create(gpu, &photos->color_params, &photos->color);
-    if (result == ORL_OK && has_chroma(photos) && !photos->chroma)
-        result = orl_tex_create(gpu, &chroma, &photos->chroma);
-    return result;
+        ORL_TRY(orl_tex_create(gpu, &photos->color_params, &photos->color));
+    if (has_chroma(photos) && !photos->chroma)
+        ORL_TRY(orl_tex_create(gpu, &chroma, &photos->chroma));
+    return ORL_OK;
 }
 
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
@@ -338,9 +336,7 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
                                     .levels = orl_mip_levels(image->width, image->height),
                                     .format = to->params.format,
                                     .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph"};
-    enum orl_result result = orl_tex_create(gpu, &params, &full);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_tex_create(gpu, &params, &full));
     int level = 0;
     while (1 << level < divide && level + 1 < params.levels)
         level++;
@@ -368,9 +364,7 @@ static enum orl_result make_radiance(const struct orl_log *log, struct photos *p
     struct orl_image radiance;
     struct photo_state *state = &photos->states[index];
     state->rounded = image->type == ORL_PIXEL_U8;
-    enum orl_result result = orl_radiance_decode(log, &response, image, &radiance, &state->white);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_radiance_decode(log, &response, image, &radiance, &state->white));
     size_t count = (size_t)radiance.width * (size_t)radiance.height;
     for (size_t i = 0; i < count; i++)
         for (size_t c = 0; c < 3; c++)
@@ -406,33 +400,29 @@ static void drop_loading(struct orl_gpu *gpu, struct photos *photos)
 enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_t index,
                                struct orl_image *image)
 {
-    enum orl_result result = orl_photos_ready(gpu, photos);
-    if (result == ORL_OK && photos->radiance)
-        result = make_radiance(orl_gpu_log(gpu), photos, index, image);
-    if (result == ORL_OK && is_compressed(photos))
-        result = make_loading(gpu, photos);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_photos_ready(gpu, photos));
+    if (photos->radiance)
+        ORL_TRY(make_radiance(orl_gpu_log(gpu), photos, index, image));
+    if (is_compressed(photos))
+        ORL_TRY(make_loading(gpu, photos));
     struct photo_state *state = &photos->states[index];
     give_slot(photos, state);
     // Coarser levels are made before compression, so that compression errors do not accumulate.
     struct orl_tex *to = photos->loading ? photos->loading : photos->color;
     int layer = photos->loading ? 0 : state->slot;
     if (photos->divide > 1)
-        result = upload_smaller(gpu, image, photos->divide, to, layer);
+        ORL_TRY(upload_smaller(gpu, image, photos->divide, to, layer));
     else
         write_pixels(image, to, layer);
     orl_tex_make_mipmaps(to, layer);
-    if (result == ORL_OK && photos->loading)
-        result = orl_tex_compress_layer(gpu, photos->loading, photos->color, state->slot);
-    if (result == ORL_OK && photos->chroma)
-        result = orl_tex_compress_layer(gpu, photos->loading, photos->chroma, state->slot);
-    if (result == ORL_OK) {
-        state->has_color = true;
-        drop_loading(gpu, photos);
-        photos->uploaded += orl_image_bytes(image);
-    }
-    return result;
+    if (photos->loading)
+        ORL_TRY(orl_tex_compress_layer(gpu, photos->loading, photos->color, state->slot));
+    if (photos->chroma)
+        ORL_TRY(orl_tex_compress_layer(gpu, photos->loading, photos->chroma, state->slot));
+    state->has_color = true;
+    drop_loading(gpu, photos);
+    photos->uploaded += orl_image_bytes(image);
+    return ORL_OK;
 }
 
 static enum orl_result load_color(const struct frame *frame, size_t index)
@@ -516,20 +506,15 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
                             .cam_from_world = photos->scene->photos[index].view.cam_from_world};
     struct surface surface;
     void **target = divide > 1 ? &frame->proxy->coarse_target : &frame->proxy->photo_target;
-    enum orl_result result = ORL_OK;
     if (!photos->depth)
-        result = orl_tex_create(frame->gpu, &photos->depth_params, &photos->depth);
-    ORL_THEN(result, orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false, target, &surface));
-    if (result != ORL_OK)
-        return result;
+        ORL_TRY(orl_tex_create(frame->gpu, &photos->depth_params, &photos->depth));
+    ORL_TRY(orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false, target, &surface));
     if (has_shadow_maps(frame)) {
         fatten(frame, &surface, kept, state->slot);
     } else {
         fill_holes(frame, &surface, kept, state->slot);
-        result = orl_occluders_put(frame, index, kept);
+        ORL_TRY(orl_occluders_put(frame, index, kept));
     }
-    if (result != ORL_OK)
-        return result;
     state->depth_key = frame->photos->depth_key;
     state->depth_divide = divide;
     return ORL_OK;
@@ -548,12 +533,11 @@ enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool
     if (orl_progress_cancelled(photos->progress))
         return ORL_ERR_CANCELLED;
     give_slot(photos, state);
-    enum orl_result result = ORL_OK;
     if (!state->has_color)
-        result = load_color(frame, photo);
-    if (result == ORL_OK && depth && orl_photos_depth_divide(frame, photo) != 1)
-        result = orl_photos_draw_depth(frame, photo, 1);
-    return result;
+        ORL_TRY(load_color(frame, photo));
+    if (depth && orl_photos_depth_divide(frame, photo) != 1)
+        ORL_TRY(orl_photos_draw_depth(frame, photo, 1));
+    return ORL_OK;
 }
 
 // --- what lies behind the subject ---

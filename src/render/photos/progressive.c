@@ -96,9 +96,8 @@ static enum orl_result draw_depth(struct loading *loading, size_t photo, int div
 {
     struct photo_costs *costs = &loading->frame->photos->costs;
     double start = orl_time_s();
-    enum orl_result result = orl_photos_draw_depth(loading->frame, photo, divide);
-    ORL_THEN(result, end_step(loading, start, divide > 1 ? &costs->coarse : &costs->depth));
-    return result;
+    ORL_TRY(orl_photos_draw_depth(loading->frame, photo, divide));
+    return end_step(loading, start, divide > 1 ? &costs->coarse : &costs->depth);
 }
 
 // The photograph is on the device with colours and, if needed, depth.
@@ -118,28 +117,27 @@ static bool is_complete(const struct loading *loading, size_t photo)
 static enum orl_result bring(struct loading *loading)
 {
     const struct photos *photos = loading->frame->photos;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < loading->count; i++) {
+    for (size_t i = 0; i < loading->count; i++) {
         size_t photo = loading->order[i];
         if (is_present(loading, photo))
             continue;
         if (!fits(loading, photos->costs.color + photos->costs.coarse, true))
             break;
         if (!photos->states[photo].has_color)
-            result = upload(loading, photo);
-        if (result == ORL_OK && photos->states[photo].has_color && !is_present(loading, photo))
-            result = draw_depth(loading, photo, COARSE);
+            ORL_TRY(upload(loading, photo));
+        if (photos->states[photo].has_color && !is_present(loading, photo))
+            ORL_TRY(draw_depth(loading, photo, COARSE));
     }
     bool at_rest = loading->frame->progressive->at_rest;
-    for (size_t i = 0; result == ORL_OK && i < loading->count; i++) {
+    for (size_t i = 0; i < loading->count; i++) {
         size_t photo = loading->order[i];
         if (!is_present(loading, photo) || is_complete(loading, photo))
             continue;
         if (!fits(loading, photos->costs.depth, at_rest))
             break;
-        result = draw_depth(loading, photo, 1);
+        ORL_TRY(draw_depth(loading, photo, 1));
     }
-    return result;
+    return ORL_OK;
 }
 
 // --- a frame ---

@@ -65,8 +65,7 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
     size_t count = 0, kept = (size_t)(frame->params->nearest + 0.5f);
     struct orl_ranked *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
                                        sizeof *all);
-    if (!all)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(all);
     for (size_t i = 0; i < frame->scene->photo_count; i++)
         if (may_use(frame, i))
             all[count++] = (struct orl_ranked){deviation(frame, i), i};

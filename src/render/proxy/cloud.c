@@ -33,9 +33,8 @@ struct buffer {
 
 static enum orl_result make_buffer(struct orl_gpu *gpu, const struct buffer *b)
 {
-    enum orl_result result =
-        orl_buf_create(gpu, ORL_OWNER_POINTS, b->tag, b->size, b->data, b->buf);
-    return result == ORL_OK ? orl_tex_view_buffer(gpu, *b->buf, b->format, b->texels) : result;
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, b->tag, b->size, b->data, b->buf));
+    return orl_tex_view_buffer(gpu, *b->buf, b->format, b->texels);
 }
 
 static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
@@ -50,10 +49,9 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
         {"point list", blocks * 4, NULL, &chunk->list, GL_R32UI, &chunk->list_texels},
         {"point list arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
     };
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++)
-        result = make_buffer(gpu, &rows[i]);
-    return result;
+    for (size_t i = 0; i < ORL_COUNT(rows); i++)
+        ORL_TRY(make_buffer(gpu, &rows[i]));
+    return ORL_OK;
 }
 
 // data: sRGB of each point of the chunk.
@@ -98,8 +96,7 @@ static enum orl_result upload_colors(struct orl_gpu *gpu, const struct orl_point
 {
     size_t count = (size_t)chunk->count;
     uint8_t (*colors)[3] = orl_array(orl_gpu_log(gpu), count, sizeof *colors);
-    if (!colors)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(colors);
     for (size_t i = 0; i < count; i++)
         if (order[i] != UINT32_MAX)
             memcpy(colors[i], points->color[order[i]], sizeof *colors);
@@ -174,14 +171,12 @@ enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
                                       struct cloud *cloud)
 {
     struct point_chunk *chunk = cloud->chunks = orl_array(orl_gpu_log(gpu), 1, sizeof *chunk);
-    if (!chunk)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(chunk);
     cloud->chunk_count = 1;
     chunk->block_count = (int)block_count;
     chunk->count = chunk->block_count * BLOCK;
-    enum orl_result result =
-        make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count});
-    return result == ORL_OK ? make_colors(gpu, chunk, NULL) : result;
+    ORL_TRY(make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count}));
+    return make_colors(gpu, chunk, NULL);
 }
 
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)

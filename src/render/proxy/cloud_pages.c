@@ -61,8 +61,7 @@ enum orl_result orl_cloud_pages_init(struct orl_gpu *gpu, const struct orl_lod *
     const struct orl_log *log = orl_gpu_log(gpu);
     struct cloud_pages *p = orl_array(log, 1, sizeof *p);
     memset(cloud, 0, sizeof *cloud);
-    if (!p)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(p);
     cloud->pages = p;
     p->lod = lod;
     p->slot_count = count_slots(gpu, lod, max_bytes);
@@ -220,9 +219,7 @@ static enum orl_result load(struct cloud_pages *p, const struct point_chunk *chu
 {
     size_t at = oldest_slot(p);
     struct slot *slot = &p->slots[at];
-    enum orl_result result = orl_lod_read(p->lod, page, p->data);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_lod_read(p->lod, page, p->data));
     if (slot->used)
         p->slot_of[slot->page] = NOWHERE;
     p->slot_of[page] = (int32_t)at;
@@ -239,15 +236,14 @@ enum orl_result orl_cloud_pages_choose(const struct cloud *cloud, const struct o
 {
     struct cloud_pages *p = cloud->pages;
     const struct point_chunk *chunk = &cloud->chunks[0];
-    enum orl_result result = ORL_OK;
     find_cut(p, view);
     p->choice++;
     for (size_t i = 0; i < p->cut_count; i++)
         if (p->slot_of[p->cut[i]] != NOWHERE)
             p->slots[p->slot_of[p->cut[i]]].used = p->choice;
-    for (size_t i = 0; result == ORL_OK && i < p->cut_count; i++)
+    for (size_t i = 0; i < p->cut_count; i++)
         if (p->slot_of[p->cut[i]] == NOWHERE)
-            result = load(p, chunk, p->cut[i]);
+            ORL_TRY(load(p, chunk, p->cut[i]));
     for (size_t i = 0; i < p->slot_count; i++) {
         bool drawn = p->slots[i].used == p->choice;
         if (drawn == p->slots[i].drawn)
@@ -255,5 +251,5 @@ enum orl_result orl_cloud_pages_choose(const struct cloud *cloud, const struct o
         p->slots[i].drawn = drawn;
         list_blocks(chunk, i, &p->slots[i]);
     }
-    return result;
+    return ORL_OK;
 }

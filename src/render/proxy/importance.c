@@ -20,8 +20,7 @@ enum orl_result orl_importance_create(struct orl_gpu *gpu, const struct orl_scen
 {
     struct orl_importance *c = orl_array(orl_gpu_log(gpu), 1, sizeof *c);
     *out = c;
-    if (!c)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(c);
     c->gpu = gpu;
     enum orl_result result = orl_proxy_create(gpu, scene, &orl_proxy_splats, 0, &c->proxy);
     ORL_THEN(result, orl_cloud_order(orl_gpu_log(gpu), &scene->points, &c->points, &c->count));

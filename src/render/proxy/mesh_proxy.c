@@ -27,8 +27,7 @@ static enum orl_result upload_colors(struct orl_gpu *gpu, struct mesh_state *sta
     if (!mesh->color)
         return ORL_OK;
     uint8_t (*padded)[4] = orl_array(orl_gpu_log(gpu), mesh->vertex_count, sizeof *padded);
-    if (!padded)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(padded);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         memcpy(padded[i], mesh->color[i], sizeof *mesh->color);
     enum orl_result result =
@@ -48,14 +47,12 @@ enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *st
             state->low[k] = fminf(state->low[k], mesh->position[i][k]);
             state->high[k] = fmaxf(state->high[k], mesh->position[i][k]);
         }
-    enum orl_result result =
-        orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh vertices", mesh->vertex_count * sizeof *mesh->position,
-                       mesh->position, &state->vertices);
-    if (result == ORL_OK)
-        result = orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh triangles",
-                                mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle,
-                                &state->indices);
-    return result == ORL_OK ? upload_colors(gpu, state) : result;
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh vertices", mesh->vertex_count * sizeof *mesh->position,
+                           mesh->position, &state->vertices));
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh triangles",
+                           mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle,
+                           &state->indices));
+    return upload_colors(gpu, state);
 }
 
 void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state)

@@ -14,8 +14,7 @@ enum orl_result orl_vertices_range(const struct orl_log *log, const float (*vert
     size_t step = vertex_count / 100000 + 1, count = (vertex_count + step - 1) / step;
     size_t out = (size_t)(share * (double)count);
     float *along = orl_array(log, count + 1, sizeof *along);
-    if (!along)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(along);
     for (int k = 0; count && k < 3; k++) {
         for (size_t i = 0; i < count; i++)
             along[i] = vertices[i * step][k];
@@ -62,9 +61,8 @@ enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *sc
                                  struct proxy *proxy)
 {
     *proxy = (struct proxy){.kind = kind};
-    enum orl_result result = kind->create(gpu, scene, max_bytes, &proxy->state);
-    ORL_THEN(result, find_vertices(orl_gpu_log(gpu), proxy, scene));
-    return result;
+    ORL_TRY(kind->create(gpu, scene, max_bytes, &proxy->state));
+    return find_vertices(orl_gpu_log(gpu), proxy, scene);
 }
 
 enum orl_result orl_proxy_update(const struct frame *frame)
@@ -103,24 +101,21 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
                                const struct orl_render_params *params, bool normals,
                                void **target, struct surface *surface)
 {
-    enum orl_result result = proxy->kind->resize(gpu, proxy->state, view->camera.width,
-                                                 view->camera.height, target);
-    if (result == ORL_OK && proxy->kind->bring)
-        result = proxy->kind->bring(proxy->state, view);
-    if (result == ORL_OK)
-        proxy->kind->draw(gpu, proxy->state, view, params, normals, *target, surface);
-    return result;
+    ORL_TRY(proxy->kind->resize(gpu, proxy->state, view->camera.width,
+                                view->camera.height, target));
+    if (proxy->kind->bring)
+        ORL_TRY(proxy->kind->bring(proxy->state, view));
+    proxy->kind->draw(gpu, proxy->state, view, params, normals, *target, surface);
+    return ORL_OK;
 }
 
 enum orl_result orl_proxy_color(const struct frame *frame, const struct paint_into *into)
 {
     const struct proxy *proxy = frame->proxy;
     const struct orl_proxy_kind *kind = proxy->kind;
-    enum orl_result result =
-        kind->bring_colors ? kind->bring_colors(frame->gpu, proxy->state) : ORL_OK;
-    if (result == ORL_OK)
-        kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, into);
-    return result;
+    ORL_TRY(kind->bring_colors ? kind->bring_colors(frame->gpu, proxy->state) : ORL_OK);
+    kind->color(frame->gpu, proxy->state, frame->view, proxy->view_target, into);
+    return ORL_OK;
 }
 
 bool orl_proxy_reads(const struct orl_render_option *option, const struct orl_proxy_kind *kind)

@@ -27,8 +27,7 @@ enum orl_result orl_raster_target_resize(struct orl_gpu *gpu, const void *state,
     orl_raster_target_free(gpu, out);
     target = orl_array(orl_gpu_log(gpu), 1, sizeof *target);
     *out = target;
-    if (!target)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(target);
     target->width = width;
     target->height = height;
     const struct {

@@ -65,18 +65,17 @@ static size_t target_bytes(const void *state, int width, int height)
 // Each level is half as large as the one before, rounded up. Loads outside read as empty.
 static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
 {
-    enum orl_result result = ORL_OK;
     int width = t->width, height = t->height;
-    for (int i = 1; result == ORL_OK && i < t->levels; i++) {
+    for (int i = 1; i < t->levels; i++) {
         width = (width + 1) / 2;
         height = (height + 1) / 2;
         struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
                                         .tag = "surfel pyramid"};
-        result = orl_tex_create(gpu, &params, &t->surfel_a[i]);
+        ORL_TRY(orl_tex_create(gpu, &params, &t->surfel_a[i]));
         params.format = GL_RG32UI;
-        ORL_THEN(result, orl_tex_create(gpu, &params, &t->surfel_b[i]));
+        ORL_TRY(orl_tex_create(gpu, &params, &t->surfel_b[i]));
     }
-    return result;
+    return ORL_OK;
 }
 
 static void finish_target(struct orl_gpu *gpu, struct splat_target *target)
