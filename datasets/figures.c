@@ -14,12 +14,6 @@ static const double pi = 3.14159265358979323846;
 
 enum orl_result orl_figures_check(const struct orl_log *log, const struct orl_figures_params *p)
 {
-    if (p->cameras < 2 || p->cameras > ORL_FIGURES_CAMERAS_MAX)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%d cameras: must be from 2 to %d", p->cameras,
-                        ORL_FIGURES_CAMERAS_MAX);
-    if (p->frames < 1 || p->frames > ORL_FIGURES_FRAMES_MAX)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%d frames: must be from 1 to %d", p->frames,
-                        ORL_FIGURES_FRAMES_MAX);
     if (p->width < ORL_FIGURES_SIDE_MIN || p->width > ORL_FIGURES_SIDE_MAX ||
         p->height < ORL_FIGURES_SIDE_MIN || p->height > ORL_FIGURES_SIDE_MAX)
         return orl_fail(log, ORL_ERR_ARGUMENT, "size %dx%d: each side must be from %d to %d",

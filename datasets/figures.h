@@ -28,7 +28,7 @@ struct orl_figures_params {
     int width, height; // pixels, [ORL_FIGURES_SIDE_MIN, ORL_FIGURES_SIDE_MAX]
 };
 
-// ORL_ERR_ARGUMENT, logged, for a value out of range.
+// ORL_ERR_ARGUMENT, logged, for a size out of range. The rows above say what the other values may be.
 enum orl_result orl_figures_check(const struct orl_log *log,
                                   const struct orl_figures_params *params) ORL_CHECK_RESULT;
 // params->cameras views.

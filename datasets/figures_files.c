@@ -157,21 +157,16 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
                                 const struct orl_figures_params *params, const char *out)
 {
     struct job job = {.log = log, .progress = progress, .params = params};
-    struct orl_new_dir dir;
+    struct orl_new_dir dir = {.fd = -1};
     ORL_TRY(orl_figures_check(log, params));
-    ORL_TRY(orl_new_dir_begin(log, out, &dir));
     struct orl_view *views = orl_array(log, (size_t)params->cameras, sizeof *views);
-    job.dir = dir.path;
-    enum orl_result result = ORL_OK;
-    if (!views) {
-        result = ORL_ERR_MEMORY;
-        goto end;
-    }
+    ORL_TRY_MEMORY(views);
     orl_figures_views(params, views);
     job.views = views;
-    result = write_all(&job);
+    enum orl_result result = orl_new_dir_begin(log, out, &dir);
+    job.dir = dir.path;
+    ORL_THEN(result, write_all(&job));
     ORL_THEN(result, orl_new_dir_finish(log, &dir));
-end:
     orl_new_dir_abort(log, &dir);
     free(views);
     return result;

@@ -44,7 +44,7 @@ enum orl_synth_response { ORL_SYNTH_RESPONSES(ORL_ENUMERATOR) };
         "share of the walls that has no texture", "monument")
 struct orl_synth_params {
     ORL_SYNTH_OPTIONS(ORL_OPTION_MEMBER)
-    const char *name;      // one of orl_synth_names
+    const char *name;      // "monument"
     int width, height;     // pixels, [ORL_SYNTH_SIDE_MIN, ORL_SYNTH_SIDE_MAX]
     // Photograph i is taken at exposures_ev[i % exposure_count]. Neighbours on the path belong to
     // different series, and no two photographs share a viewpoint.
@@ -56,11 +56,8 @@ struct orl_synth_params {
 #define ORL_SYNTH_DEFAULTS \
     ORL_SYNTH_OPTIONS(ORL_OPTION_PRESET) .name = "monument", .width = 768, .height = 512
 
-// All names, terminated by NULL, and a description of each.
-const char *const *orl_synth_names(void);
-const char *orl_synth_summary(const char *name); // NULL if unknown
-
-// ORL_ERR_ARGUMENT, logged, for an unknown name or a value out of range.
+// ORL_ERR_ARGUMENT, logged, for an unknown name, a size or an exposure out of range. The rows above
+// say what the other values may be.
 enum orl_result orl_synth_check(const struct orl_log *log,
                                 const struct orl_synth_params *params) ORL_CHECK_RESULT;
 

@@ -225,28 +225,21 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
 {
     struct job job = {.log = orl_gpu_log(gpu), .params = params};
     struct orl_new_dir photos_dir = {.fd = -1}, truth_dir = {.fd = -1};
-    struct orl_view *views = NULL;
-    enum orl_result result = orl_synth_check(job.log, params);
-    ORL_THEN(result, orl_new_dir_begin(job.log, photos, &photos_dir));
+    ORL_TRY(orl_synth_check(job.log, params));
+    struct orl_view *views = orl_array(job.log, (size_t)params->count, sizeof *views);
+    ORL_TRY_MEMORY(views);
+    enum orl_result result = orl_new_dir_begin(job.log, photos, &photos_dir);
     ORL_THEN(result, orl_new_dir_begin(job.log, truth, &truth_dir));
-    if (result != ORL_OK)
-        goto end;
-    views = orl_array(job.log, (size_t)params->count, sizeof *views);
     job.photos = photos_dir.path;
     job.truth = truth_dir.path;
-    if (!views) {
-        result = ORL_ERR_MEMORY;
-        goto end;
-    }
     if (!params->views)
         orl_synth_views(params, views);
     job.views = params->views ? params->views : views;
-    result = make_folders(&job);
+    ORL_THEN(result, make_folders(&job));
     ORL_THEN(result, write_cameras(&job));
     ORL_THEN(result, draw_all(gpu, progress, &job));
     ORL_THEN(result, orl_new_dir_finish(job.log, &truth_dir));
     ORL_THEN(result, orl_new_dir_finish(job.log, &photos_dir));
-end:
     orl_new_dir_abort(job.log, &photos_dir);
     orl_new_dir_abort(job.log, &truth_dir);
     free(views);

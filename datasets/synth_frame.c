@@ -25,10 +25,7 @@ _Static_assert(sizeof(struct frame_params) == 128, "std140");
 
 struct orl_synth {
     struct orl_gpu *gpu;
-    int width, height;
-    uint32_t seed;
-    double contrast_ev, gloss, bars_m, plain;
-    bool vehicle;
+    struct orl_synth_params params; // its name, exposures and views are not used
     char variant[80]; // defines of the programs
     struct orl_tex *start, *radiance, *truth;
 };
@@ -49,10 +46,7 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
     ORL_TRY(orl_synth_check(log, params));
     struct orl_synth *synth = orl_array(log, 1, sizeof *synth);
     ORL_TRY_MEMORY(synth);
-    *synth = (struct orl_synth){.gpu = gpu, .width = params->width, .height = params->height,
-                                .seed = params->seed, .contrast_ev = params->contrast_ev,
-                                .gloss = params->gloss, .bars_m = params->bars_m,
-                                .plain = params->plain, .vehicle = params->vehicle};
+    *synth = (struct orl_synth){.gpu = gpu, .params = *params};
     snprintf(synth->variant, sizeof synth->variant, "%s%s%s%s%s",
              params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : "",
              params->gloss > 0 ? "GLOSS 1\n" : "", params->bars_m > 0 ? "BARS 1\n" : "",
@@ -87,10 +81,10 @@ static struct frame_params params_of(const struct orl_synth *synth, const struct
     struct frame_params params = {
         .camera = {(float)view->camera.fx, (float)view->camera.fy, (float)view->camera.cx,
                    (float)view->camera.cy},
-        .size = {synth->width, synth->height, 0, synth->height},
-        .seed = {synth->seed * 0x9e3779b9u},
-        .light = {(float)synth->contrast_ev, (float)synth->gloss, (float)(0.5 * synth->bars_m),
-                  (float)synth->plain},
+        .size = {synth->params.width, synth->params.height, 0, synth->params.height},
+        .seed = {synth->params.seed * 0x9e3779b9u},
+        .light = {(float)synth->params.contrast_ev, (float)synth->params.gloss, (float)(0.5 * synth->params.bars_m),
+                  (float)synth->params.plain},
     };
     double eye[3];
     orl_pose_centre(&view->cam_from_world, eye);
@@ -112,13 +106,13 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
                                       const struct orl_progress *progress,
                                       struct frame_params *params)
 {
-    int band = BAND_PIXELS / synth->width / TILE * TILE;
+    int band = BAND_PIXELS / synth->params.width / TILE * TILE;
     if (band < TILE)
         band = TILE;
-    for (int row = 0; row < synth->height; row += band) {
+    for (int row = 0; row < synth->params.height; row += band) {
         if (orl_progress_cancelled(progress))
             return ORL_ERR_CANCELLED;
-        int rows = synth->height - row < band ? synth->height - row : band;
+        int rows = synth->params.height - row < band ? synth->params.height - row : band;
         params->size[2] = row;
         params->size[3] = row + rows;
         orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
@@ -126,7 +120,7 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
             .params = params, .params_size = sizeof *params,
             .images = {{synth->start, 0, GL_READ_ONLY}, {synth->radiance, 0, GL_WRITE_ONLY},
                        {synth->truth, 0, GL_WRITE_ONLY}},
-            .groups = {orl_groups((size_t)synth->width, TILE), orl_groups((size_t)rows, TILE)},
+            .groups = {orl_groups((size_t)synth->params.width, TILE), orl_groups((size_t)rows, TILE)},
             .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
         ORL_TRY(orl_gpu_finish(synth->gpu));
     }
@@ -136,25 +130,26 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
 static enum orl_result read_frame(const struct orl_synth *synth, struct orl_synth_frame *frame)
 {
     const struct orl_log *log = orl_gpu_log(synth->gpu);
-    int w = synth->width, h = synth->height;
+    const struct orl_synth_params *p = &synth->params;
+    int w = p->width, h = p->height;
     size_t pixels = (size_t)w * (size_t)h;
     float *texels = orl_array(log, pixels, 4 * sizeof *texels);
     enum orl_result result = texels ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, orl_image_init(log, &frame->radiance, w, h, 3, ORL_PIXEL_F32));
     ORL_THEN(result, orl_image_init(log, &frame->depth, w, h, 1, ORL_PIXEL_F32));
     ORL_THEN(result, orl_image_init(log, &frame->normal, w, h, 3, ORL_PIXEL_F32));
-    if (result == ORL_OK && synth->plain > 0)
+    if (result == ORL_OK && p->plain > 0)
         result = orl_image_init(log, &frame->textured, w, h, 1, ORL_PIXEL_F32);
-    if (result == ORL_OK && synth->vehicle)
+    if (result == ORL_OK && p->vehicle)
         result = orl_image_init(log, &frame->vehicle, w, h, 1, ORL_PIXEL_U8);
     if (result != ORL_OK)
         goto end;
     orl_tex_read(synth->radiance, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
     for (size_t i = 0; i < pixels; i++) {
         memcpy(frame->radiance.f32 + 3 * i, texels + 4 * i, 3 * sizeof *texels);
-        if (synth->plain > 0)
+        if (p->plain > 0)
             frame->textured.f32[i] = texels[4 * i + 3] != KIND_PLAIN;
-        if (synth->vehicle)
+        if (p->vehicle)
             frame->vehicle.u8[i] = texels[4 * i + 3] == KIND_VEHICLE ? 255 : 0;
     }
     orl_tex_read(synth->truth, 0, GL_RGBA, GL_FLOAT, pixels * 4 * sizeof *texels, texels);
@@ -172,16 +167,16 @@ enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progres
                                const struct orl_view *view, struct orl_synth_frame *frame)
 {
     memset(frame, 0, sizeof *frame);
-    ORL_REQUIRE(orl_gpu_log(synth->gpu), view->camera.width == synth->width &&
-                                             view->camera.height == synth->height &&
+    ORL_REQUIRE(orl_gpu_log(synth->gpu), view->camera.width == synth->params.width &&
+                                             view->camera.height == synth->params.height &&
                                              orl_camera_valid(&view->camera));
     struct frame_params params = params_of(synth, view);
     orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(synth->gpu, "synth/cone.comp", NULL, variant_of(synth)),
         .params = &params, .params_size = sizeof params,
         .images = {{synth->start, 0, GL_WRITE_ONLY}},
-        .groups = {orl_groups((size_t)synth->width, TILE * TILE),
-                   orl_groups((size_t)synth->height, TILE * TILE)},
+        .groups = {orl_groups((size_t)synth->params.width, TILE * TILE),
+                   orl_groups((size_t)synth->params.height, TILE * TILE)},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
     enum orl_result result = dispatch_bands(synth, progress, &params);
     ORL_THEN(result, read_frame(synth, frame));
