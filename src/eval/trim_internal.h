@@ -12,10 +12,10 @@ extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
 
 // What is left of a scene.
 struct trim_state {
-    size_t points, depth;       // levels
-    enum orl_textures textures; // AUTO: as in the scene
+    // How small each part is; 0: as in the scene. Of textures an enum orl_textures. So many of the
+    // photographs in the search's order were to go; few may have come back.
+    size_t level[ORL_TRIM_PART_COUNT];
     struct orl_render_params render;
-    size_t photographs; // so many of the search's order were to go; few may have come back
     bool *removed; // owned, per photograph
     size_t removed_count;
 };

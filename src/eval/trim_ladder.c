@@ -95,17 +95,6 @@ void orl_trim_plan(struct trim_search *s)
     s->validation_count = views && views < s->deciding_count ? views : s->deciding_count;
 }
 
-static size_t level_of(const struct trim_state *state, enum orl_trim_part part)
-{
-    switch (part) {
-    case ORL_TRIM_POINTS: return state->points;
-    case ORL_TRIM_PHOTOGRAPH: return state->photographs;
-    case ORL_TRIM_TEXTURES: return state->textures;
-    case ORL_TRIM_DEPTH: return state->depth;
-    default: return 0;
-    }
-}
-
 // The last level that the scene and the parameters allow.
 static size_t max_level(const struct trim_search *s, const struct rung *rung)
 {
@@ -128,7 +117,7 @@ static void remove_photographs(const struct trim_search *s, size_t count, struct
 {
     const struct orl_scene *scene = s->source.scene;
     memcpy(state->removed, s->first_state.removed, scene->photo_count * sizeof *state->removed);
-    state->photographs = state->removed_count = count;
+    state->removed_count = count;
     for (size_t k = 0; k < count; k++)
         state->removed[s->targets.views[s->order[k]].photo] = true;
 }
@@ -139,20 +128,18 @@ static void set_level(const struct trim_search *s, enum orl_trim_part part, size
     struct trim_state *state = &t->now.state;
     struct orl_scene_defaults defaults;
     enum { SIZE = sizeof t->what };
+    state->level[part] = level;
     switch (part) {
     case ORL_TRIM_POINTS:
-        state->points = level;
         snprintf(t->what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[level]);
         break;
     case ORL_TRIM_PHOTOGRAPH:
         remove_photographs(s, level, state);
         break;
     case ORL_TRIM_TEXTURES:
-        state->textures = (enum orl_textures)level;
         snprintf(t->what, SIZE, "textures %s", orl_textures_names[level]);
         break;
     default:
-        state->depth = level;
         defaults = orl_trim_defaults(&s->source, state);
         snprintf(t->what, SIZE, "depth 1/%d, %d bits", defaults.depth_divide,
                  defaults.depth_half ? 16 : 32);
@@ -277,7 +264,7 @@ static bool ends(struct trim_search *s)
 
 static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
 {
-    size_t low = level_of(&s->now.state, rung->part), high = max_level(s, rung);
+    size_t low = s->now.state.level[rung->part], high = max_level(s, rung);
     for (int i = 0; low < high && i < BISECTIONS && !ends(s); i++) {
         size_t level = (low + high + 1) / 2;
         bool taken;
@@ -293,7 +280,7 @@ static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
 static enum orl_result climb_levels(struct trim_search *s, const struct rung *rung, size_t by)
 {
     bool taken = true;
-    for (size_t level = level_of(&s->now.state, rung->part) + by;
+    for (size_t level = s->now.state.level[rung->part] + by;
          taken && level <= max_level(s, rung) && !ends(s); level += by)
         if (has_level(s, rung, level))
             ORL_TRY(try_level(s, rung, level, &taken));
@@ -360,7 +347,7 @@ static enum orl_result drop_textures(struct trim_search *s)
 {
     struct trim_trial t;
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_TEXTURES, &t);
-    t.now.state.textures = ORL_TEXTURES_AUTO;
+    t.now.state.level[ORL_TRIM_TEXTURES] = ORL_TEXTURES_AUTO;
     snprintf(t.what, sizeof t.what, "textures as they were");
     ORL_THEN(result, orl_trim_trial_measure(s, &t, false));
     ORL_THEN(result, orl_trim_trial_take(s, &t));
@@ -376,7 +363,7 @@ enum orl_result orl_trim_make_faster(struct trim_search *s)
         ORL_TRY(climb_options(s, true));
         ORL_TRY(orl_trim_time_whole(s, &slow));
     }
-    if (slow && s->now.state.textures != ORL_TEXTURES_AUTO) {
+    if (slow && s->now.state.level[ORL_TRIM_TEXTURES] != ORL_TEXTURES_AUTO) {
         ORL_TRY(drop_textures(s));
         ORL_TRY(orl_trim_time_whole(s, &slow));
     }

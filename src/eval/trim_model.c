@@ -30,11 +30,11 @@ struct orl_scene_defaults orl_trim_defaults(const struct trim_source *source,
                                             const struct trim_state *state)
 {
     struct orl_scene_defaults defaults = source->scene->defaults;
-    if (state->textures != ORL_TEXTURES_AUTO)
-        defaults.textures = (char *)orl_textures_names[state->textures];
-    if (state->depth) {
-        int divide = depth_levels[state->depth].divide;
-        defaults.depth_half = depth_levels[state->depth].half;
+    if (state->level[ORL_TRIM_TEXTURES] != ORL_TEXTURES_AUTO)
+        defaults.textures = (char *)orl_textures_names[state->level[ORL_TRIM_TEXTURES]];
+    if (state->level[ORL_TRIM_DEPTH]) {
+        int divide = depth_levels[state->level[ORL_TRIM_DEPTH]].divide;
+        defaults.depth_half = depth_levels[state->level[ORL_TRIM_DEPTH]].half;
         defaults.depth_divide = defaults.depth_divide > divide ? defaults.depth_divide : divide;
     }
     return defaults;
@@ -78,7 +78,7 @@ enum orl_result orl_trim_model_open(const struct trim_source *source,
                                     const struct trim_state *state, struct trim_model **out)
 {
     size_t points = 0, photos = 0, all = source->scene->points.count;
-    size_t count = (size_t)(orl_trim_point_shares[state->points] * (double)all + 0.5);
+    size_t count = (size_t)(orl_trim_point_shares[state->level[ORL_TRIM_POINTS]] * (double)all + 0.5);
     struct trim_model *model = orl_array(source->log, 1, sizeof *model);
     *out = model;
     ORL_TRY_MEMORY(model);

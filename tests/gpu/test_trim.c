@@ -290,7 +290,7 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
         for (size_t level = 1; level <= 2; level++) {
             struct trim_trial t;
             assert_int_equal(orl_trim_trial_begin(&s, ORL_TRIM_DEPTH, &t), ORL_OK);
-            t.now.state.depth = level;
+            t.now.state.level[ORL_TRIM_DEPTH] = level;
             t.now.bytes = s.now.bytes - 10;
             assert_int_equal(orl_trim_trial_take(&s, &t), ORL_OK);
             orl_trim_trial_end(&t);
@@ -299,7 +299,7 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
             first[i].db += fine ? 0.4 : 0.6;
         assert_int_equal(orl_trim_confirm(&s), ORL_OK);
         assert_int_equal(s.history_count, fine ? 2 : 0);
-        assert_int_equal(s.now.state.depth, fine ? 2 : 0);
+        assert_int_equal(s.now.state.level[ORL_TRIM_DEPTH], fine ? 2 : 0);
         assert_int_equal(report.undone, fine ? 0 : 2);
         assert_true(report.steps[1].taken == fine);
         assert_float_equal(s.now.bytes, fine ? 80 : 100, 0);
