@@ -423,12 +423,8 @@ enum orl_result orl_database_create_like(const struct orl_log *log, const char *
 
 enum orl_result orl_database_take_features(struct orl_database *db, const char *name)
 {
-    enum orl_result result = run_with_text(
-        db, "INSERT INTO main.keypoints SELECT * FROM part.keypoints WHERE image_id = "
-            "(SELECT image_id FROM main.images WHERE name = ?)", name, NULL);
-    return result == ORL_OK
-               ? run_with_text(db, "INSERT INTO main.descriptors SELECT * FROM part.descriptors "
-                                   "WHERE image_id = (SELECT image_id FROM main.images WHERE "
-                                   "name = ?)", name, NULL)
-               : result;
+    ORL_TRY(run_with_text(db, "INSERT INTO main.keypoints SELECT * FROM part.keypoints WHERE image_id = "
+                              "(SELECT image_id FROM main.images WHERE name = ?)", name, NULL));
+    return run_with_text(db, "INSERT INTO main.descriptors SELECT * FROM part.descriptors WHERE image_id = "
+                             "(SELECT image_id FROM main.images WHERE name = ?)", name, NULL);
 }

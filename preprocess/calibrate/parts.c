@@ -1,6 +1,5 @@
 #include "preprocess/calibrate/parts.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -131,9 +130,8 @@ static enum orl_result find_parts(const struct orl_job *job, enum orl_part_step 
 
 static enum orl_result rename_in(const struct orl_job *job, const char *from, const char *to)
 {
-    const char *source = ORL_PATH(job->dir, "%s", from), *target = ORL_PATH(job->dir, "%s", to);
-    ORL_TRY(orl_flush(job->log, source));
-    return rename(source, target) == 0 ? ORL_OK : orl_fail(job->log, ORL_ERR_IO, "%s: %s", target, strerror(errno));
+    ORL_TRY(orl_flush(job->log, ORL_PATH(job->dir, "%s", from)));
+    return orl_job_replace(job, from, to);
 }
 
 // --- the jobs ---

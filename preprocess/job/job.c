@@ -215,17 +215,11 @@ enum orl_result orl_job_save_stages(const struct orl_job *job)
 enum orl_result orl_job_write_list(const struct orl_job *job, const char *path,
                                    const struct orl_names *names)
 {
-    size_t size = 0;
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(job->log, path, &file));
     for (size_t i = 0; i < names->count; i++)
-        size += strlen(names->items[i]) + 1;
-    char *text = orl_array(job->log, size + 1, 1);
-    ORL_TRY_MEMORY(text);
-    char *at = text;
-    for (size_t i = 0; i < names->count; i++)
-        at += sprintf(at, "%s\n", names->items[i]);
-    enum orl_result result = orl_file_write(job->log, path, text, size);
-    free(text);
-    return result;
+        fprintf(file.stream, "%s\n", names->items[i]);
+    return orl_atomic_commit(job->log, &file);
 }
 
 // Negative: unknown.

@@ -172,13 +172,11 @@ struct folder {
 
 static bool is_barred(const struct orl_job *job, const struct folder *folder)
 {
-    char *scene = orl_path_join(job->log, folder->path, "scene.json");
     char *masks = job->params->masks_dir ? realpath(job->params->masks_dir, NULL) : NULL;
-    bool barred = !scene || orl_path_is_file(scene) || strcmp(folder->real, job->dir) == 0 ||
+    bool barred = orl_path_is_file(ORL_PATH(folder->path, "scene.json")) || strcmp(folder->real, job->dir) == 0 ||
                   (masks && strcmp(folder->real, masks) == 0);
     for (const struct folder *up = folder->up; up && !barred; up = up->up)
         barred = strcmp(up->real, folder->real) == 0;
-    free(scene);
     free(masks);
     return barred;
 }

@@ -1,8 +1,8 @@
 #include <jansson.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "cli/command.h"
+#include "cli/command_output.h"
 #include "cli/summary.h"
 #include "core/file.h"
 #include "core/json.h"
@@ -42,13 +42,11 @@ static void print_photos(const struct orl_scene *scene)
 static enum orl_result print_json(const struct orl_log *log, const struct orl_scene *scene)
 {
     json_t *root = orl_scene_info(log, scene);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(9)) : NULL;
-    if (text)
-        printf("%s\n", text);
-    enum orl_result result = text ? ORL_OK : ORL_ERR_FORMAT;
-    free(text);
+    if (!root)
+        return ORL_ERR_FORMAT;
+    char *text = json_dumps(root, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(9));
     json_decref(root);
-    return result;
+    return report_write(log, "-", text);
 }
 
 // How the scene is drawn unless a command says otherwise.

@@ -1,9 +1,9 @@
 // oriel plan: what is left of a scene's work, as a graph of commands.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
+#include "cli/command_output.h"
 #include "core/json.h"
 #include "preprocess/plan.h"
 
@@ -43,20 +43,15 @@ static enum orl_result run_plan(struct call *call)
     const struct plan_options *o = call->options;
     const struct orl_log *log = call->log;
     json_t *plan;
-    enum orl_result result = orl_plan(log, call->inputs[0], o->photographs, &plan);
-    if (result != ORL_OK)
-        return result;
+    enum orl_result result = ORL_OK;
+    ORL_TRY(orl_plan(log, call->inputs[0], o->photographs, &plan));
     const json_t *jobs = json_object_get(plan, "jobs");
-    char *text = o->json ? json_dumps(plan, JSON_INDENT(1) | JSON_ENSURE_ASCII) : NULL;
-    if (o->json && !text)
-        result = ORL_ERR_MEMORY;
-    else if (text)
-        printf("%s\n", text);
+    if (o->json)
+        result = report_write(log, "-", json_dumps(plan, JSON_INDENT(1) | JSON_ENSURE_ASCII));
     else if (!json_array_size(jobs))
         printf("%s is whole: there is nothing left to do\n", call->inputs[0]);
     for (size_t i = 0; !o->json && i < ORL_COUNT(kinds); i++)
         print_kind(jobs, kinds[i]);
-    free(text);
     json_decref(plan);
     return result;
 }

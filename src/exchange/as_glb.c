@@ -13,6 +13,7 @@
 #include "exchange/gaussians.h"
 #include "exchange/kinds.h"
 #include "oriel/hdr.h"
+#include "scene/info.h"
 #include "scene/ply.h"
 
 enum { GL_UNSIGNED_SHORT_ = 5123, GL_FLOAT_ = 5126, GL_ARRAY_BUFFER_ = 34962, POINTS_ = 0 };
@@ -66,19 +67,11 @@ static void add_attribute(json_t *root, json_t *attributes, const char *name, si
 
 static void add_bounds(json_t *root, const struct orl_points *points)
 {
-    float low[3], high[3];
-    memcpy(low, points->position[0], sizeof low);
-    memcpy(high, low, sizeof high);
-    for (size_t i = 0; i < points->count; i++)
-        for (int k = 0; k < 3; k++) {
-            low[k] = fminf(low[k], points->position[i][k]);
-            high[k] = fmaxf(high[k], points->position[i][k]);
-        }
+    double low[3], high[3];
+    orl_points_bounds(points, low, high);
     json_t *position = json_array_get(json_object_get(root, "accessors"), 0);
-    json_object_set_new(position, "min", json_pack("[f, f, f]", (double)low[0], (double)low[1],
-                                                   (double)low[2]));
-    json_object_set_new(position, "max", json_pack("[f, f, f]", (double)high[0], (double)high[1],
-                                                   (double)high[2]));
+    json_object_set_new(position, "min", json_pack("[f, f, f]", low[0], low[1], low[2]));
+    json_object_set_new(position, "max", json_pack("[f, f, f]", high[0], high[1], high[2]));
 }
 
 // The rotation, x y z w, by which the photographs' upward direction becomes glTF's, +y.
