@@ -29,12 +29,12 @@ run() {
         word=${word//SCENES/$scenes}
         word=${word//DATASETS/$datasets}
         word=${word//WORK/$work}
+        [[ $word == tests/* ]] && word=$source/$word
         words+=("${word//NAME/${2:-}}")
     done
     case ${words[0]} in
     oriel) words[0]=$build/oriel ;;
     bench_* | gpu_* | unit_*) words[0]=$build/tests/${words[0]} ;;
-    tests/*) words[0]=$source/${words[0]} ;;
     esac
     echo "measuring: ${words[*]}" >&2
     "${words[@]}" </dev/null
@@ -535,10 +535,10 @@ END
 }
 
 page_web() {
-    local measure='tests/web/measure.py BUILD SCENES/NAME --views 3 --json WORK/web.json'
-    local live='tests/web/measure_live.py BUILD SCENES/NAME --frames 120 --json WORK/web.json'
-    local walk='tests/web/measure_walk.py BUILD SCENES/NAME --rate 2 --json WORK/web.json'
-    local visit='tests/web/measure_visit.py BUILD SCENES/monument'
+    local measure='/usr/bin/python3 tests/web/measure.py BUILD SCENES/NAME --views 3 --json WORK/web.json'
+    local live='/usr/bin/python3 tests/web/measure_live.py BUILD SCENES/NAME --frames 120 --json WORK/web.json'
+    local walk='/usr/bin/python3 tests/web/measure_walk.py BUILD SCENES/NAME --rate 2 --json WORK/web.json'
+    local visit='/usr/bin/python3 tests/web/measure_visit.py BUILD SCENES/monument'
     local kind name command
     for kind in measure live walk; do
         for name in $(scene_names fountain herz sceaux bronze temple monument dtu); do
