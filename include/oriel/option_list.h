@@ -64,7 +64,7 @@
     NUMBER(outliers, 0.3f, 0, 1, "square root of light", "combine=robust", ORL_NO_TRIES, \
         "A sample that differs from the consensus by this much counts half. With 0 there are " \
         "no outliers.") \
-    NUMBER(sharpness, 3, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
+    NUMBER(sharpness, 2, 0, 64, "", "weight=lumigraph", ORL_TRIES(1, 2, 3, 4, 6, 10), \
         "How strongly the better photograph is preferred. With 0 all weigh the same.") \
     NUMBER(depth_tolerance, 0.01f, 1e-5, 0.5, "fraction of depth", "visibility=hard " \
         "visibility=soft visibility=shadow visibility=opaque paint=tiled", \

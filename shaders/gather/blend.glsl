@@ -55,20 +55,15 @@ void insert(sight s, inout ranking r)
 const float GUESS_SURE_MIN = 0.1;
 
 // Weight of the k-th photograph.
-float sight_weight(ranking r, int k, spot s)
+float sight_weight(ranking r, int k)
 {
     sight one = r.best[k];
     // The weight is full until the penalty comes near that of the first photograph left out. A
     // trace of weight remains at equality, so that photographs that tie for the last place paint.
     float fade = r.next == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / r.next));
-    float sharpness = is_guess(s) ? GUESS_SHARPNESS : opt.sharpness;
     bool counts = one.penalty < NOT_SEEN && one.penalty <= r.next;
-    return counts ? pow(r.best[0].penalty / one.penalty, sharpness) * fade : 0.0;
+    return counts ? pow(r.best[0].penalty / one.penalty, opt.sharpness) * fade : 0.0;
 }
-
-// Factor on the outlier severity on estimated depth, where a photograph that differs usually shows
-// another surface.
-const float GUESS_SEVERITY = 4.0;
 
 // What the photographs of a pixel show, best first, as photo_ranked reads it.
 struct samples {
@@ -89,11 +84,10 @@ vec4 blend(spot s, ranking r, samples from, out float luma, out float blur)
         vote += vec4(sqrt(from.shown[k].rgb), 1.0) * sqrt(from.weight[k]);
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
     vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
-    float severity = outlier_severity * (is_guess(s) ? GUESS_SEVERITY : 1.0);
     float first = from.weight[0], kept = 0.0, total = 0.0; // of the best one's weight, the share that it keeps
     for (int k = 0; k < KEPT; k++) {
         vec3 off = sqrt(from.shown[k].rgb) - mean;
-        float share = 1.0 / (1.0 + dot(off, off) * severity), weight = from.weight[k] * share;
+        float share = 1.0 / (1.0 + dot(off, off) * outlier_severity), weight = from.weight[k] * share;
         apart += vec2(dot(off, off), 1.0) * from.weight[k];
         sum += from.shown[k] * weight;
         total += weight;

@@ -21,9 +21,6 @@ float photo_surface_penalty(float penalty)
     return length(vec2(penalty, SURFACE_PENALTY));
 }
 
-// How strongly the better photograph is preferred on estimated depth: opt.sharpness there.
-const float GUESS_SHARPNESS = 1.5;
-
 // A photograph with this penalty, an angle of about 50 degrees, shows other sides of objects. It is
 // of no use where the depth is only estimated.
 const float GUESS_PENALTY_MAX = 0.9;

@@ -33,11 +33,11 @@ float surface_penalty(float penalty)
 #include "gather/consider.glsl"
 
 // What the k-th photograph of a ranking shows. Every one is read: see insert.
-void look(ranking r, int k, spot s, inout samples to)
+void look(ranking r, int k, inout samples to)
 {
     sight one = r.best[k];
     to.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, to.detail);
-    to.weight[k] = sight_weight(r, k, s);
+    to.weight[k] = sight_weight(r, k);
 }
 
 #ifdef SOFT
@@ -83,7 +83,7 @@ void main()
         samples from;
         from.detail = vec4(0.0);
         for (int n = 0; n < KEPT; n++)
-            look(rankings[k], n, spots[k], from);
+            look(rankings[k], n, from);
         colors[k] = blend(spots[k], rankings[k], from, lumas[k], own);
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k] * (is_guess(spots[k]) ? 1.0 : ORL_SURFACE_SEED);

@@ -560,7 +560,8 @@ static float green_before(float z)
 static void guesses_are_no_part_of_objects(void **state)
 {
     (void)state;
-    double both = 1 / (1 + pow(1.1, 1.5)), little = 1 / (1 + pow(1.1 * 0.15, 1.5));
+    const double sharpness = best().sharpness;
+    double both = 1 / (1 + pow(1.1, sharpness)), little = 1 / (1 + pow(1.1 * 0.15, sharpness));
     assert_float_equal(green_before(10), little, 0.02);
     assert_float_equal(green_before(40), both, 0.02);
 }

@@ -54,7 +54,7 @@ void main()
     from.detail = vec4(0.0);
     for (int k = 0; k < KEPT; k++) {
         sight one = r.best[k];
-        from.weight[k] = sight_weight(r, k, s);
+        from.weight[k] = sight_weight(r, k);
         from.shown[k] = vec4(0.0);
         if (from.weight[k] > 0.0)
             from.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, from.detail);

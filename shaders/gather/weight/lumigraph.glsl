@@ -7,8 +7,7 @@ float weight_of(photo source, Point at)
     float share = at.guessed ? 0.1 / penalty
                           : photo_surface_penalty(0.1) / photo_surface_penalty(penalty);
     // The bounds keep sums and products finite, and the weight of every photograph above zero.
-    float weight =
-        clamp(pow(share, at.guessed ? GUESS_SHARPNESS : opt.sharpness), 1e-10, 1e18);
+    float weight = clamp(pow(share, opt.sharpness), 1e-10, 1e18);
     return at.guessed ? weight * photo_beside(penalty) : weight;
 }
 
