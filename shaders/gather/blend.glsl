@@ -51,9 +51,6 @@ void insert(sight s, inout ranking r)
     r.next = min(r.next, s.penalty);
 }
 
-// Least visibility on estimated depth: with less, a photograph leaves specks of its foreground.
-const float GUESS_SURE_MIN = 0.1;
-
 // Weight of the k-th photograph.
 float sight_weight(ranking r, int k)
 {

@@ -16,8 +16,7 @@ sight consider(int i, photo source, spot s)
     vec4 seen = photo_depths(source, pixel);
     float penalty = photo_penalty(source, s.p);
     // Estimated depth is tested even if the method has no visibility test: it is behind everything.
-    float sees = is_guess(s) ? photo_unhidden_share(source, seen, z) * photo_past_share(source, seen, z) *
-                                   photo_beside(penalty)
+    float sees = is_guess(s) ? photo_unhidden_share(source, seen, z) * photo_beside(penalty)
                              : surface_share(source, s, seen, z);
     penalty = is_guess(s) ? penalty : surface_penalty(penalty);
 #ifdef RESTS
@@ -30,6 +29,6 @@ sight consider(int i, photo source, spot s)
     penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
 #endif
     float sure = sees * photo_border(source, pixel);
-    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > (is_guess(s) ? GUESS_SURE_MIN : 1e-4);
+    bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > 1e-4;
     return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z));
 }

@@ -46,18 +46,3 @@ float photo_unhidden_share(photo source, vec4 seen, float z)
     vec4 share = mix(clamp(2.0 - front, 0.0, 1.0), vec4(1.0), equal(seen, vec4(0.0)));
     return dot(share, vec4(0.25)); // at a depth edge the background is visible in part
 }
-
-// How far a photograph counts on estimated depth where it sees another part of the object from which
-// the depth was estimated: more than nothing, since its own depth may be an error.
-const float GUESS_PAST = 0.15;
-
-// Falls from 1 to GUESS_PAST as the photograph sees a surface a little behind z. The point is then
-// not where it was estimated, and the photograph shows the object beside it. Surfaces farther back
-// are the background, which it may paint.
-float photo_past_share(photo source, vec4 seen, float z)
-{
-    vec4 past = clamp((seen - z) * (1.0 / (z * opt.depth_tolerance)) - 1.0, 0.0, 1.0);
-    vec4 parallax = (1.0 / z - 1.0 / max(seen, 1e-9)) * (length(source.eye.xyz) / GUESS_PARALLAX);
-    past *= clamp(2.0 - parallax, 0.0, 1.0);
-    return 1.0 - (1.0 - GUESS_PAST) * dot(past, vec4(0.25));
-}

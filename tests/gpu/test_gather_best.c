@@ -529,43 +529,6 @@ static void photographs_that_tie_paint(void **state)
     teardown(&f);
 }
 
-// The share of green where the ground, at depth 8.47, has only an estimated depth. The red
-// photograph, a little nearer by angle, sees past it at a patch of depth `z`, which the view shows
-// elsewhere.
-static float green_before(float z)
-{
-    enum { SIDE = 20, VIEW = 96, ROW = 90, COLUMN = 48 };
-    const double depth = 3 * 120 / (ROW + 0.5 - VIEW / 2.0), along = (double)z / depth;
-    struct fixture f;
-    setup_empty(&f, 8);
-    assert_int_equal(orl_points_init(NULL, &f.scene.points, SIDE * SIDE), ORL_OK);
-    set_square(&f.scene.points, 0, SIDE, 0.02 * (double)z, 2 - 2 * along, z, red);
-    for (size_t i = 0; i < SIDE * SIDE; i++)
-        f.scene.points.position[i][1] += (float)(3 * along);
-    f.scene.ground = (struct orl_ground){.plane = {0, -1, 0, 3}, .height = 2};
-    add_photo(&f, look_from(2, 0, 0, VIEW, 120), red);
-    add_photo(&f, look_from(-2.2, 0, 0, VIEW, 120), green);
-    struct orl_render_params params = best();
-    params.min_support = params.guess_blur = 0;
-    struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, VIEW, 120), &params, 0);
-    float share = color_at(&frame, COLUMN, ROW)[1];
-    assert_float_equal(frame.coverage.f32[ROW * VIEW + COLUMN], 0, 0);
-    orl_frame_finish(&frame);
-    teardown(&f);
-    return share;
-}
-
-// A photograph that shows an object a little behind the estimated place hardly paints there; one
-// that shows what is far behind does. Penalties are in proportion to 2 and 2.2.
-static void guesses_are_no_part_of_objects(void **state)
-{
-    (void)state;
-    const double sharpness = best().sharpness;
-    double both = 1 / (1 + pow(1.1, sharpness)), little = 1 / (1 + pow(1.1 * 0.15, sharpness));
-    assert_float_equal(green_before(10), little, 0.02);
-    assert_float_equal(green_before(40), both, 0.02);
-}
-
 int main(void)
 {
     gpu = gpu_test_device();
@@ -588,7 +551,6 @@ int main(void)
         cmocka_unit_test(guesses_end_at_the_ground),
         cmocka_unit_test(guesses_are_not_seen_from_the_side),
         cmocka_unit_test(photographs_that_tie_paint),
-        cmocka_unit_test(guesses_are_no_part_of_objects),
     };
     int failed = cmocka_run_group_tests_name("gather best", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);
