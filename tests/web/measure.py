@@ -7,6 +7,7 @@ picture and in all, memory, and the processor time of a frame as a ratio to poin
 import argparse
 import json
 import os
+import re
 import subprocess
 import tempfile
 import time
@@ -90,7 +91,9 @@ def main():
     work = options.out or tempfile.mkdtemp()
     os.makedirs(work, exist_ok=True)
     oriel, tool = f"{options.build}/oriel", f"{options.build}/tests/bench_web_pictures"
-    print(run(oriel, "publish", options.scene, "--out", f"{work}/site").splitlines()[0])
+    published = run(oriel, "publish", options.scene, "--out", f"{work}/site").splitlines()[0]
+    print(published)
+    first_mb = float(re.search(r"([0-9.]+) MB until", published)[1])
     cameras = json.loads(run(tool, "cameras", options.scene))
     test = [c for c in cameras if c["test"]] or cameras[:3]
     if options.views:
@@ -102,8 +105,8 @@ def main():
         browser.wait("return document.getElementById('poster').complete")
         print(f"poster after {time.monotonic() - start:.1f} s")
         browser.wait("return !!window.oriel && oriel.picture.renderer.frame !== null")
-        first_mb = browser.js("return oriel.files.bytes") / 1e6
-        print(f"coarse points after {time.monotonic() - start:.1f} s, {first_mb:.2f} MB of data")
+        print(f"coarse points after {time.monotonic() - start:.1f} s, "
+              f"{browser.js('return oriel.files.bytes') / 1e6:.2f} MB of data")
         browser.settle()
         print(f"everything after {time.monotonic() - start:.1f} s")
         memory = {role: resident_mib(pids) for role, pids in browser_processes(browser).items()}
