@@ -539,16 +539,16 @@ page_web() {
     local live='/usr/bin/python3 tests/web/measure_live.py BUILD SCENES/NAME --frames 120 --json WORK/web.json'
     local walk='/usr/bin/python3 tests/web/measure_walk.py BUILD SCENES/NAME --rate 2 --json WORK/web.json'
     local visit='/usr/bin/python3 tests/web/measure_visit.py BUILD SCENES/monument'
-    local kind name command
+    local kind name command names=$(scene_names fountain herz sceaux bronze temple monument dtu)
     for kind in measure live walk; do
-        for name in $(scene_names fountain herz sceaux bronze temple monument dtu); do
+        for name in $names; do
             [ $kind = measure ] || [[ " fountain temple monument " == *" $name "* ]] || continue
             command=${!kind}
             run "$command" "$name" >&2
             cat "$work/web.json"
         done | jq -s . >"$work/web_$kind.json"
     done
-    head_of "The published page beside the renderer" "$(list $(scene_names fountain herz sceaux bronze temple monument dtu))"
+    head_of "The published page beside the renderer" "$(list $names)"
     cat <<'END'
 
 The page is drawn by headless Chromium on SwiftShader, the server's frames by Mesa's llvmpipe.
