@@ -21,7 +21,7 @@ static enum orl_result write_masks(struct orl_job *job, const struct orl_scene *
             continue;
         if (written++ == 0)
             result = orl_job_fresh_dir(job, "occluders");
-        const struct orl_file_path path = orl_scene_occluders_path(scene, i);
+        const struct orl_file_path path = orl_scene_file(scene, i, ORL_FILE_OCCLUDERS);
         ORL_THEN(result, orl_file_make_folder(job->log, path.text));
         ORL_THEN(result, orl_png_write(job->log, path.text, &masks[i]));
         if (result == ORL_OK && json_object_set_new(occluded, scene->photos[i].name,

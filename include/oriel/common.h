@@ -27,7 +27,7 @@
 
 #define ORL_COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-// A path by value, for `f(orl_scene_photo_path(scene, photo).text)`. One that is longer than the system takes is cut,
+// A path by value, for `f(orl_scene_mesh_path(scene).text)`. One that is longer than the system takes is cut,
 // but remains too long, so that nothing opens it.
 enum { ORL_PATH_SIZE = 4097 };
 struct orl_file_path {

@@ -14,11 +14,11 @@ struct orl_photo {
     struct orl_view view; // size and intrinsics as of the undistorted file, pixels as stored
     int orientation;      // by EXIF, 1 to 8: how the stored picture is turned; 0: not known
     bool test;            // held out: used for calibration only
-    bool linear;          // has a linear version (orl_scene_linear_path)
+    bool linear;          // has a linear version (ORL_FILE_LINEAR)
     bool radiance;        // its linear version is radiance (oriel hdr --replace-series): no value
                           // is clipped, however near to white
-    bool masked;          // has a mask (orl_scene_mask_path)
-    float occluded;       // share of it that shows occluders (orl_scene_occluders_path); 0: none
+    bool masked;          // has a mask (ORL_FILE_MASK)
+    float occluded;       // share of it that shows occluders (ORL_FILE_OCCLUDERS); 0: none
     double exposure_ev;   // log2 of exposure relative to the scene's median; 0 if unknown
     bool has_exposure;    // exposure_ev comes from EXIF or a list
     int series;           // exposure series, from 0
@@ -132,23 +132,27 @@ int orl_scene_find_photo(const struct orl_scene *scene, const char *name);
 // ORL_ERR_ARGUMENT: there is no such frame. ORL_ERR_NOT_FOUND: one of its photographs is missing.
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene,
                                     int frame) ORL_CHECK_RESULT;
-// "SCENE/images/<name>", or "SCENE/frames/<number>/images/<name>" when a frame is selected.
-struct orl_file_path orl_scene_photo_path(const struct orl_scene *scene, size_t photo);
-// The photograph's mask or silhouette (silhouette.h): "SCENE/masks/<name>.png", or
-// "SCENE/frames/<number>/masks/<name>.png" when a frame is selected. The mask is as large as the
-// photograph and 0 outside the subject. The file exists when photo->masked.
-struct orl_file_path orl_scene_mask_path(const struct orl_scene *scene, size_t photo);
-// Where the photograph shows what stands before the scene and has no points: a mask of any size,
-// 255 there, else 0: "SCENE/occluders/<name>.png". The file exists when photo->occluded > 0. It is
-// of SCENE/images, not of the time steps of a sequence.
-struct orl_file_path orl_scene_occluders_path(const struct orl_scene *scene, size_t photo);
-// A picture of the place without the subject: "SCENE/background/<name>.png". The file may be
-// missing.
-struct orl_file_path orl_scene_background_path(const struct orl_scene *scene, size_t photo);
+// A photograph's files.
+enum orl_photo_file {
+    // "SCENE/images/<name>", or "SCENE/frames/<number>/images/<name>" when a frame is selected.
+    ORL_FILE_PHOTO,
+    // Its mask or silhouette (silhouette.h): "SCENE/masks/<name>.png", or
+    // "SCENE/frames/<number>/masks/<name>.png" when a frame is selected. The mask is as large as the
+    // photograph and 0 outside the subject. The file exists when photo->masked.
+    ORL_FILE_MASK,
+    // Where the photograph shows what stands before the scene and has no points: a mask of any size,
+    // 255 there, else 0: "SCENE/occluders/<name>.png". The file exists when photo->occluded > 0. It is
+    // of SCENE/images, not of the time steps of a sequence.
+    ORL_FILE_OCCLUDERS,
+    // A picture of the place without the subject: "SCENE/background/<name>.png". The file may be
+    // missing.
+    ORL_FILE_BACKGROUND,
+    // "SCENE/images_linear/<name>.exr". The file may be missing.
+    ORL_FILE_LINEAR,
+};
+struct orl_file_path orl_scene_file(const struct orl_scene *scene, size_t photo, enum orl_photo_file kind);
 // "SCENE/mesh.ply", or the mesh of the selected frame, "SCENE/frames/<number>/mesh.ply", where there
 // is one. The file may be missing.
 struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene);
-// "SCENE/images_linear/<name>.exr". The file may be missing.
-struct orl_file_path orl_scene_linear_path(const struct orl_scene *scene, size_t photo);
 
 #endif

@@ -69,7 +69,8 @@ static enum orl_result read_occluders(const struct refine *r, size_t photo, stru
         return ORL_OK;
     struct orl_image mask = {0};
     const int width = to->color.width, height = to->color.height;
-    enum orl_result result = orl_picture_read(r->log, orl_scene_occluders_path(r->scene, photo).text, 1, &mask);
+    enum orl_result result = orl_picture_read(r->log, orl_scene_file(r->scene, photo, ORL_FILE_OCCLUDERS).text,
+                                               1, &mask);
     ORL_THEN(result, orl_image_init(r->log, &to->use, width, height, 1, ORL_PIXEL_U8));
     for (int y = 0; result == ORL_OK && y < height; y++)
         for (int x = 0; x < width; x++) {

@@ -39,7 +39,8 @@ size_t orl_trim_scene_file_bytes(const struct orl_scene *scene)
         bytes += file_size(ORL_PATH(scene->dir, "%s", names[i]));
     for (size_t i = 0; i < scene->photo_count; i++)
         if (!scene->photos[i].test)
-            bytes += file_size(orl_scene_photo_path(scene, i).text) + file_size(orl_scene_mask_path(scene, i).text);
+            bytes += file_size(orl_scene_file(scene, i, ORL_FILE_PHOTO).text) +
+                     file_size(orl_scene_file(scene, i, ORL_FILE_MASK).text);
     return bytes;
 }
 

@@ -38,8 +38,9 @@ static enum orl_result add_frame(const struct orl_log *log, const struct orl_sce
                           orl_json_string(image));
     if (p->test) // nerfstudio evaluates on these
         json_array_append_new(json_object_get(root, "val_filenames"), orl_json_string(image));
-    ORL_TRY(orl_file_copy(log, orl_scene_photo_path(scene, photo).text, ORL_PATH(dir, "%s", image)));
-    return mask ? orl_file_copy(log, orl_scene_mask_path(scene, photo).text, ORL_PATH(dir, "%s", mask)) : ORL_OK;
+    ORL_TRY(orl_file_copy(log, orl_scene_file(scene, photo, ORL_FILE_PHOTO).text, ORL_PATH(dir, "%s", image)));
+    return mask ? orl_file_copy(log, orl_scene_file(scene, photo, ORL_FILE_MASK).text, ORL_PATH(dir, "%s", mask))
+                : ORL_OK;
 }
 
 static enum orl_result fill(const struct orl_log *log, const struct orl_progress *progress,

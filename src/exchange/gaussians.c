@@ -144,7 +144,7 @@ static void add(const struct fit *fit, const struct orl_photo *photo, const stru
 static enum orl_result read_picture(const struct fit *fit, size_t photo, struct picture *p)
 {
     const struct orl_photo *of = &fit->scene->photos[photo];
-    const struct orl_file_path path = orl_scene_photo_path(fit->scene, photo);
+    const struct orl_file_path path = orl_scene_file(fit->scene, photo, ORL_FILE_PHOTO);
     ORL_TRY(orl_picture_read(fit->log, path.text, 3, &p->image));
     if (p->image.width != of->view.camera.width || p->image.height != of->view.camera.height)
         return orl_fail(fit->log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d",
@@ -152,7 +152,7 @@ static enum orl_result read_picture(const struct fit *fit, size_t photo, struct 
                         of->view.camera.height);
     for (int v = 0; v < 256; v++)
         p->linear[v] = orl_srgb_decode((float)v / 255);
-    return of->occluded > 0 ? orl_picture_read(fit->log, orl_scene_occluders_path(fit->scene, photo).text, 1,
+    return of->occluded > 0 ? orl_picture_read(fit->log, orl_scene_file(fit->scene, photo, ORL_FILE_OCCLUDERS).text, 1,
                                                &p->occluders)
                             : ORL_OK;
 }

@@ -50,8 +50,10 @@ static enum orl_result read_optics(const struct orl_json_place *place, const jso
 }
 
 // Refuses a photograph without the file that scene.json promises.
-static enum orl_result need_file(const struct orl_json_place *place, struct orl_file_path path, const char *what)
+static enum orl_result need_file(const struct orl_json_place *place, const struct orl_scene *scene,
+                                 const struct orl_photo *photo, enum orl_photo_file kind, const char *what)
 {
+    const struct orl_file_path path = orl_scene_file(scene, (size_t)(photo - scene->photos), kind);
     return orl_path_is_file(path.text)
                ? ORL_OK : orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: %s missing", path.text, what);
 }
@@ -60,8 +62,7 @@ static enum orl_result read_mask(const struct orl_json_place *place, const json_
                                  const struct orl_scene *scene, struct orl_photo *photo)
 {
     ORL_TRY(orl_json_bool(place, entry, "mask", &photo->masked));
-    return photo->masked ? need_file(place, orl_scene_mask_path(scene, (size_t)(photo - scene->photos)), "this mask is")
-                         : ORL_OK;
+    return photo->masked ? need_file(place, scene, photo, ORL_FILE_MASK, "this mask is") : ORL_OK;
 }
 
 static enum orl_result read_occluders(const struct orl_json_place *place, const json_t *entry,
@@ -72,7 +73,7 @@ static enum orl_result read_occluders(const struct orl_json_place *place, const 
     photo->occluded = (float)share;
     if (!(photo->occluded > 0))
         return ORL_OK;
-    return need_file(place, orl_scene_occluders_path(scene, (size_t)(photo - scene->photos)), "these occluders are");
+    return need_file(place, scene, photo, ORL_FILE_OCCLUDERS, "these occluders are");
 }
 
 static enum orl_result read_radiance(const struct orl_json_place *place, const json_t *entry,

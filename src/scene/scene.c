@@ -64,13 +64,13 @@ static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *
 {
     struct orl_photo *photo = &scene->photos[i];
     bool there, linear, masked;
-    ORL_TRY(check_if_there(log, scene, orl_scene_photo_path(scene, i), &there));
+    ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_PHOTO), &there));
     if (!there)
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
                         scene->dir, photo->name);
-    ORL_TRY(check_if_there(log, scene, orl_scene_linear_path(scene, i), &linear));
+    ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_LINEAR), &linear));
     photo->linear = linear && !shows_time_step(scene);
-    return check_if_there(log, scene, orl_scene_mask_path(scene, i), &masked);
+    return check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_MASK), &masked);
 }
 
 static enum orl_result check_photo_files(const struct orl_log *log, struct orl_scene *scene)
@@ -450,38 +450,23 @@ static const char *time_steps_of(const struct orl_scene *scene)
     return scene->time_steps_dir ? scene->time_steps_dir : scene->dir;
 }
 
-// The path "SCENE/", or with `moves` "SCENE/frames/<number>/" of the time step that shows, followed by
-// folder, name and ending.
-static struct orl_file_path photo_path(const struct orl_scene *scene, bool moves, const char *folder, size_t photo,
-                                       const char *ending)
+struct orl_file_path orl_scene_file(const struct orl_scene *scene, size_t photo, enum orl_photo_file kind)
 {
+    static const struct {
+        const char *folder, *ending;
+        bool moves; // is there one of each time step?
+    } kinds[] = {[ORL_FILE_PHOTO] = {"images", "", true},
+                 [ORL_FILE_MASK] = {"masks", ".png", true},
+                 [ORL_FILE_OCCLUDERS] = {"occluders", ".png", false},
+                 [ORL_FILE_BACKGROUND] = {"background", ".png", false},
+                 [ORL_FILE_LINEAR] = {"images_linear", ".exr", false}};
     struct orl_file_path path = {""};
     char frame[32] = "";
-    if (moves && shows_time_step(scene))
+    if (kinds[kind].moves && shows_time_step(scene))
         snprintf(frame, sizeof frame, "frames/%05d/", scene->frame);
-    orl_path_print(path.text, *frame ? time_steps_of(scene) : scene->dir, "%s%s/%s%s", frame, folder,
-                   scene->photos[photo].name, ending);
+    orl_path_print(path.text, *frame ? time_steps_of(scene) : scene->dir, "%s%s/%s%s", frame, kinds[kind].folder,
+                   scene->photos[photo].name, kinds[kind].ending);
     return path;
-}
-
-struct orl_file_path orl_scene_photo_path(const struct orl_scene *scene, size_t photo)
-{
-    return photo_path(scene, true, "images", photo, "");
-}
-
-struct orl_file_path orl_scene_mask_path(const struct orl_scene *scene, size_t photo)
-{
-    return photo_path(scene, true, "masks", photo, ".png");
-}
-
-struct orl_file_path orl_scene_occluders_path(const struct orl_scene *scene, size_t photo)
-{
-    return photo_path(scene, false, "occluders", photo, ".png");
-}
-
-struct orl_file_path orl_scene_background_path(const struct orl_scene *scene, size_t photo)
-{
-    return photo_path(scene, false, "background", photo, ".png");
 }
 
 struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
@@ -492,9 +477,4 @@ struct orl_file_path orl_scene_mesh_path(const struct orl_scene *scene)
         return path;
     orl_path_print(path.text, scene->dir, "mesh.ply");
     return path;
-}
-
-struct orl_file_path orl_scene_linear_path(const struct orl_scene *scene, size_t photo)
-{
-    return photo_path(scene, false, "images_linear", photo, ".exr");
 }

@@ -21,16 +21,16 @@ static enum orl_result copy_if_there(const struct orl_log *log, const struct orl
 enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct orl_scene *scene,
                                       size_t photo, const char *dir)
 {
-    ORL_TRY(copy_if_there(log, scene, orl_scene_mask_path(scene, photo).text, dir));
-    ORL_TRY(copy_if_there(log, scene, orl_scene_background_path(scene, photo).text, dir));
-    return copy_if_there(log, scene, orl_scene_occluders_path(scene, photo).text, dir);
+    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_MASK).text, dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_BACKGROUND).text, dir));
+    return copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_OCCLUDERS).text, dir);
 }
 
 enum orl_result orl_subset_copy_photo(const struct orl_log *log, const struct orl_scene *scene,
                                       size_t photo, const char *dir)
 {
-    ORL_TRY(copy_if_there(log, scene, orl_scene_photo_path(scene, photo).text, dir));
-    ORL_TRY(copy_if_there(log, scene, orl_scene_linear_path(scene, photo).text, dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_PHOTO).text, dir));
+    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_LINEAR).text, dir));
     return orl_subset_copy_masks(log, scene, photo, dir);
 }
 

@@ -166,7 +166,7 @@ static enum orl_result add_camera(struct live *live, const char *dir, size_t pho
     const struct orl_photo *p = &live->scene->photos[photo];
     struct camera *camera = &live->cameras[live->camera_count++];
     struct orl_image picture = {0};
-    const struct orl_file_path path = orl_scene_background_path(live->scene, photo);
+    const struct orl_file_path path = orl_scene_file(live->scene, photo, ORL_FILE_BACKGROUND);
     *camera = (struct camera){.photo = photo};
     camera->from = orl_format(live->log, "%s/%.*s", dir, (int)orl_path_stem(p->name), p->name);
     ORL_TRY_MEMORY(camera->from);

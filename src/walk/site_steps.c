@@ -175,7 +175,7 @@ static enum orl_result wall_of(const struct site *site, size_t photo, size_t mos
     const struct orl_view *view = &site->scene->photos[photo].view;
     const struct orl_camera *c = &view->camera;
     struct orl_image picture = {0}, mask = {0};
-    const struct orl_file_path path = orl_scene_background_path(site->scene, photo);
+    const struct orl_file_path path = orl_scene_file(site->scene, photo, ORL_FILE_BACKGROUND);
     bool empty = orl_path_is_file(path.text);
     enum orl_result result = empty ? orl_picture_read(log, path.text, 3, &picture)
                                    : orl_photo_read(log, site->scene, photo, false, &picture);

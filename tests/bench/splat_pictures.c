@@ -210,7 +210,7 @@ static enum orl_result compare(const struct orl_log *log, const struct orl_scene
                                const struct splats *all, const char *out, struct orl_metrics *m)
 {
     struct orl_image picture = {0}, photo = {0}, coverage = {0};
-    char *path = strdup(orl_scene_photo_path(scene, i).text);
+    char *path = strdup(orl_scene_file(scene, i, ORL_FILE_PHOTO).text);
     char *to = orl_format(log, "%s/%.*s.png", out, (int)strcspn(scene->photos[i].name, "."),
                           scene->photos[i].name);
     enum orl_result result = path && to ? ORL_OK : ORL_ERR_MEMORY;

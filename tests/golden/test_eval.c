@@ -95,7 +95,7 @@ static void held_out_pixels_are_not_used(void **state)
     assert_int_equal(orl_image_init(NULL, &black, TINY_WIDTH, TINY_HEIGHT, 3, ORL_PIXEL_U8),
                      ORL_OK);
     memset(black.u8, 1, orl_image_bytes(&black));
-    char *path = strdup(orl_scene_photo_path(&scene, TINY_TEST_PHOTO).text);
+    char *path = strdup(orl_scene_file(&scene, TINY_TEST_PHOTO, ORL_FILE_PHOTO).text);
     char *out = orl_path_join(NULL, dir, "out"), *name = orl_path_join(NULL, out, "2.airieau.png");
     assert_int_equal(orl_png_write(NULL, path, &black), ORL_OK);
     struct orl_eval after = evaluate(&scene, "airieau", out);

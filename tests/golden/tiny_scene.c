@@ -138,7 +138,7 @@ void tiny_scene_make(const char *dir, struct orl_scene *scene)
             orl_pose_look_at(eyes[i], (double[]){0, 0, 3.5}, (double[]){0, -1, 0});
         struct orl_image color, depth;
         tiny_scene_trace(&photo->view, &color, &depth);
-        char *path = strdup(orl_scene_photo_path(scene, i).text);
+        char *path = strdup(orl_scene_file(scene, i, ORL_FILE_PHOTO).text);
         assert_int_equal(orl_png_write(NULL, path, &color), ORL_OK);
         free(path);
         orl_image_finish(&color);

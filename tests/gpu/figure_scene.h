@@ -9,7 +9,7 @@
 static inline void mask_photo(struct fixture *f, struct orl_image *mask)
 {
     size_t last = f->scene.photo_count - 1;
-    char *path = strdup(orl_scene_mask_path(&f->scene, last).text);
+    char *path = strdup(orl_scene_file(&f->scene, last, ORL_FILE_MASK).text);
     char *masks = orl_path_join(NULL, f->dir, "masks");
     assert_int_equal(orl_dir_make(NULL, masks), ORL_OK);
     assert_int_equal(orl_png_write(NULL, path, mask), ORL_OK);

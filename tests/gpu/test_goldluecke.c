@@ -350,7 +350,7 @@ static void add_background(const struct fixture *f)
     size_t last = f->scene.photo_count - 1;
     const struct orl_camera *c = &f->photos[last].view.camera;
     char *folder = orl_path_join(NULL, f->dir, "background");
-    char *path = strdup(orl_scene_background_path(&f->scene, last).text);
+    char *path = strdup(orl_scene_file(&f->scene, last, ORL_FILE_BACKGROUND).text);
     assert_int_equal(orl_dir_make(NULL, folder), ORL_OK);
     assert_int_equal(orl_image_init(NULL, &image, c->width, c->height, 3, ORL_PIXEL_U8), ORL_OK);
     assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
@@ -396,8 +396,8 @@ static double psnr_within(const struct fixture *f, const struct orl_frame *frame
                           int margin)
 {
     struct orl_image srgb, photo, mask;
-    char *path = strdup(orl_scene_photo_path(&f->scene, index).text);
-    char *mask_path = strdup(orl_scene_mask_path(&f->scene, index).text);
+    char *path = strdup(orl_scene_file(&f->scene, index, ORL_FILE_PHOTO).text);
+    char *mask_path = strdup(orl_scene_file(&f->scene, index, ORL_FILE_MASK).text);
     assert_int_equal(orl_tone_srgb(NULL, &frame->color, &srgb), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, path, 3, &photo), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, mask_path, 1, &mask), ORL_OK);

@@ -97,7 +97,7 @@ static struct orl_photo *add_photo(struct fixture *f, struct orl_view view, doub
     }
     for (int c = 0; c < 3; c++)
         photo->gain[c] = exp2f((float)-ev);
-    char *path = strdup(orl_scene_photo_path(&f->scene, f->scene.photo_count++).text);
+    char *path = strdup(orl_scene_file(&f->scene, f->scene.photo_count++, ORL_FILE_PHOTO).text);
     assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
     free(path);
     orl_image_finish(&image);
@@ -604,7 +604,7 @@ static void linear_files_keep_their_range(void **state)
     struct orl_exr_params exr = {.width = SIDE, .height = SIDE, .channel_count = 3};
     for (int c = 0; c < 3; c++)
         exr.channels[c] = (struct orl_exr_channel){{"RGB"[c]}, false, light + c, 3};
-    char *path = strdup(orl_scene_linear_path(&f.scene, 0).text);
+    char *path = strdup(orl_scene_file(&f.scene, 0, ORL_FILE_LINEAR).text);
     assert_int_equal(orl_exr_write(NULL, path, &exr), ORL_OK);
     free(path);
     photo->linear = true;

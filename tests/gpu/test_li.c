@@ -253,7 +253,7 @@ static void setup_room(struct fixture *f, int count)
         assert_int_equal(orl_image_init(NULL, &background, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
         for (int p = 0; p < SIDE * SIDE; p++)
             memcpy(&background.u8[3 * p], colors[i], 3);
-        char *path = strdup(orl_scene_background_path(&f->scene, (size_t)i).text);
+        char *path = strdup(orl_scene_file(&f->scene, (size_t)i, ORL_FILE_BACKGROUND).text);
         assert_int_equal(orl_png_write(NULL, path, &background), ORL_OK);
         orl_image_finish(&background);
         free(path);
@@ -315,7 +315,7 @@ static void edges_on_walls_stay_sharp(void **state)
     assert_int_equal(orl_image_init(NULL, &background, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < SIDE * SIDE; i++)
         background.u8[3 * i] = i % SIDE < 21 ? 255 : 0;
-    char *path = strdup(orl_scene_background_path(&f.scene, 0).text);
+    char *path = strdup(orl_scene_file(&f.scene, 0, ORL_FILE_BACKGROUND).text);
     assert_int_equal(orl_png_write(NULL, path, &background), ORL_OK);
     struct orl_render_params params = params_of(NULL, 0);
     struct orl_frame frame = draw(gpu, &f, f.photos[0].view, &params, 0);

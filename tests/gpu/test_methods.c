@@ -226,7 +226,7 @@ static double likeness(struct fixture *f, struct orl_view view,
 {
     struct orl_frame frame = draw(gpu, f, view, params, 0);
     struct orl_image srgb, photo;
-    char *path = strdup(orl_scene_photo_path(&f->scene, 0).text);
+    char *path = strdup(orl_scene_file(&f->scene, 0, ORL_FILE_PHOTO).text);
     assert_int_equal(orl_tone_srgb(NULL, &frame.color, &srgb), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, path, 3, &photo), ORL_OK);
     double squares = 0, count = 0;

@@ -26,7 +26,7 @@ static void setup_occluder(struct fixture *f)
 
 static void write_mask(struct fixture *f, const struct orl_image *mask, double share)
 {
-    char *path = strdup(orl_scene_occluders_path(&f->scene, WITH).text);
+    char *path = strdup(orl_scene_file(&f->scene, WITH, ORL_FILE_OCCLUDERS).text);
     assert_int_equal(orl_file_make_folder(NULL, path), ORL_OK);
     assert_int_equal(orl_png_write(NULL, path, mask), ORL_OK);
     f->photos[WITH].occluded = (float)share;

@@ -43,8 +43,8 @@ static void setup_time_steps(struct fixture *f)
             assert_int_equal(orl_figures_draw(NULL, &figure, &views[i], &picture), ORL_OK);
             if (f->scene.frame == 0)
                 add_photo(f, views[i], red);
-            char *photo = strdup(orl_scene_photo_path(&f->scene, i).text);
-            char *mask = strdup(orl_scene_mask_path(&f->scene, i).text);
+            char *photo = strdup(orl_scene_file(&f->scene, i, ORL_FILE_PHOTO).text);
+            char *mask = strdup(orl_scene_file(&f->scene, i, ORL_FILE_MASK).text);
             assert_int_equal(orl_png_write(NULL, photo, &picture.photo), ORL_OK);
             assert_int_equal(orl_png_write(NULL, mask, &picture.mask), ORL_OK);
             f->photos[i].masked = true;
@@ -183,8 +183,8 @@ static void files_are_read_once(void **state)
     float (*plain)[3] = malloc(count * sizeof *plain);
     memcpy(plain, s.proxy.vertices, count * sizeof *plain);
     for (size_t i = 0; i < CAMERAS; i++) {
-        remove_file(strdup(orl_scene_photo_path(&s.f.scene, i).text));
-        remove_file(strdup(orl_scene_mask_path(&s.f.scene, i).text));
+        remove_file(strdup(orl_scene_file(&s.f.scene, i, ORL_FILE_PHOTO).text));
+        remove_file(strdup(orl_scene_file(&s.f.scene, i, ORL_FILE_MASK).text));
     }
     orl_proxy_finish(gpu, &s.proxy);
     assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, 0, &s.proxy), ORL_OK);
@@ -233,7 +233,7 @@ static void missing_files_are_left_alone(void **state)
     struct prefetch *prefetch;
     setup_stage(&s);
     s.f.scene.frame = 1;
-    remove_file(strdup(orl_scene_photo_path(&s.f.scene, 3).text));
+    remove_file(strdup(orl_scene_file(&s.f.scene, 3, ORL_FILE_PHOTO).text));
     s.f.scene.frame = 0;
     assert_int_equal(orl_prefetch_create(&s.frame, 1, &prefetch), ORL_OK);
     assert_null(prefetch);
@@ -252,8 +252,8 @@ static void broken_files_are_left_alone(void **state)
     struct orl_image image;
     setup_stage(&s);
     s.f.scene.frame = 1;
-    char *photo = strdup(orl_scene_photo_path(&s.f.scene, 3).text);
-    char *mask = strdup(orl_scene_mask_path(&s.f.scene, 2).text);
+    char *photo = strdup(orl_scene_file(&s.f.scene, 3, ORL_FILE_PHOTO).text);
+    char *mask = strdup(orl_scene_file(&s.f.scene, 2, ORL_FILE_MASK).text);
     uint64_t key = orl_voxels_key(&s.frame);
     s.f.scene.frame = 0;
     assert_int_equal(truncate(photo, 100), 0);

@@ -162,7 +162,7 @@ static void test_missing_file(void **state)
     struct orl_renderer *renderer;
     const struct orl_render_params *params = &orl_method_find(NULL, "oriel")->params;
     setup_green(&f);
-    char *path = strdup(orl_scene_photo_path(&f.scene, 1).text);
+    char *path = strdup(orl_scene_file(&f.scene, 1, ORL_FILE_PHOTO).text);
     assert_int_equal(unlink(path), 0);
     free(path);
     assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);

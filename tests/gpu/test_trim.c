@@ -318,12 +318,12 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
 static void move_to_folder(struct fixture *f)
 {
     for (size_t i = 0; i < f->scene.photo_count; i++) {
-        char *from = strdup(orl_scene_photo_path(&f->scene, i).text);
+        char *from = strdup(orl_scene_file(&f->scene, i, ORL_FILE_PHOTO).text);
         char *name = orl_format(NULL, "side/%s", f->photos[i].name);
         free(f->photos[i].name);
         f->photos[i].name = name;
-        char *to = strdup(orl_scene_photo_path(&f->scene, i).text);
-        char *background = strdup(orl_scene_background_path(&f->scene, i).text);
+        char *to = strdup(orl_scene_file(&f->scene, i, ORL_FILE_PHOTO).text);
+        char *background = strdup(orl_scene_file(&f->scene, i, ORL_FILE_BACKGROUND).text);
         assert_int_equal(orl_file_copy(NULL, from, to), ORL_OK);
         assert_int_equal(orl_file_copy(NULL, from, background), ORL_OK);
         free(from);
@@ -340,8 +340,8 @@ static void check_files(const struct orl_scene *whole, const struct orl_scene *s
     both.dir = small->dir;
     for (size_t i = 0; i < whole->photo_count; i++) {
         bool kept = orl_scene_find_photo(small, whole->photos[i].name) >= 0;
-        char *photo = strdup(orl_scene_photo_path(&both, i).text);
-        char *background = strdup(orl_scene_background_path(&both, i).text);
+        char *photo = strdup(orl_scene_file(&both, i, ORL_FILE_PHOTO).text);
+        char *background = strdup(orl_scene_file(&both, i, ORL_FILE_BACKGROUND).text);
         assert_true(orl_path_is_file(photo) == kept);
         assert_true(orl_path_is_file(background) == kept);
         free(photo);

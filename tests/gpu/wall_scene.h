@@ -72,7 +72,7 @@ static inline void setup(struct fixture *f, bool plate)
 // The last photograph becomes this picture, which is freed.
 static inline void repaint_photo(struct fixture *f, struct orl_image *image)
 {
-    char *path = strdup(orl_scene_photo_path(&f->scene, f->scene.photo_count - 1).text);
+    char *path = strdup(orl_scene_file(&f->scene, f->scene.photo_count - 1, ORL_FILE_PHOTO).text);
     assert_int_equal(orl_png_write(NULL, path, image), ORL_OK);
     orl_image_finish(image);
     free(path);

@@ -113,7 +113,7 @@ static void check_photo(const struct orl_scene *scene, const char *name, float s
     int index = orl_scene_find_photo(scene, name);
     assert_true(index >= 0);
     struct orl_image linear, eight;
-    char *path = strdup(orl_scene_photo_path(scene, (size_t)index).text);
+    char *path = strdup(orl_scene_file(scene, (size_t)index, ORL_FILE_PHOTO).text);
     assert_true(scene->photos[index].linear);
     assert_int_equal(orl_photo_read(NULL, scene, (size_t)index, true, &linear), ORL_OK);
     assert_int_equal(orl_picture_read(NULL, path, 3, &eight), ORL_OK);
@@ -164,7 +164,7 @@ static void deep_photographs_get_copies_and_linear_light(void **state)
     check_photo(scene, "e.png", 0.05f, true);
     // COLMAP reads no PNG of 16 bits.
     struct orl_picture_info info;
-    char *deep = strdup(orl_scene_photo_path(scene, (size_t)orl_scene_find_photo(scene, "e.png")).text);
+    char *deep = strdup(orl_scene_file(scene, (size_t)orl_scene_find_photo(scene, "e.png"), ORL_FILE_PHOTO).text);
     assert_int_equal(orl_picture_inspect(NULL, deep, &info), ORL_OK);
     assert_int_equal(info.bits, 8);
     free(deep);

@@ -74,7 +74,7 @@ static void check_same_picture(const char *a, const char *b, int channels, int t
 // The silhouette of photograph `photo` has about the pixels of the true one.
 static void check_mask(const struct orl_scene *scene, size_t photo, const char *truth)
 {
-    char *path = strdup(orl_scene_mask_path(scene, photo).text);
+    char *path = strdup(orl_scene_file(scene, photo, ORL_FILE_MASK).text);
     struct orl_image mask = picture(path, 1), exact = picture(truth, 1);
     size_t both = 0, any = 0;
     for (size_t i = 0; i < orl_image_bytes(&mask); i++) {
@@ -113,7 +113,7 @@ static void imports_sequences(void **state)
         char name[64];
         assert_int_equal(orl_scene_set_frame(NULL, scene, frame), ORL_OK);
         snprintf(name, sizeof name, "cam01/%05d.png", frame < 0 ? 0 : frame);
-        char *photo = strdup(orl_scene_photo_path(scene, 1).text);
+        char *photo = strdup(orl_scene_file(scene, 1, ORL_FILE_PHOTO).text);
         truth = join(w->images, name);
         check_same_picture(photo, truth, 3, 40); // JPEG of small cells
         free(truth);
@@ -132,7 +132,7 @@ static void imports_sequences(void **state)
     assert_int_equal(orl_scene_set_frame(&log, scene, 1), ORL_ERR_NOT_FOUND);
     assert_int_equal(scene->frame, 2);
     free(gone);
-    char *background = strdup(orl_scene_background_path(scene, 1).text);
+    char *background = strdup(orl_scene_file(scene, 1, ORL_FILE_BACKGROUND).text);
     truth = join(w->background, "cam01.png");
     check_same_picture(background, truth, 3, 1);
     free(background);
@@ -267,8 +267,8 @@ static void undistorts(void **state)
     assert_int_equal(orl_scene_open(NULL, out, &scene), ORL_OK);
     const struct orl_camera *c = &scene->photos[1].view.camera;
     for (int channels = 1; channels <= 3; channels += 2) { // the mask, then the photograph
-        char *file = channels == 1 ? strdup(orl_scene_mask_path(scene, 1).text)
-                                   : strdup(orl_scene_photo_path(scene, 1).text);
+        char *file = channels == 1 ? strdup(orl_scene_file(scene, 1, ORL_FILE_MASK).text)
+                                   : strdup(orl_scene_file(scene, 1, ORL_FILE_PHOTO).text);
         struct orl_image straight = picture(file, channels);
         double sum = 0, at[2] = {0, 0};
         assert_int_equal(straight.width, c->width);
@@ -503,7 +503,7 @@ static void copies_and_completes(void **state)
     assert_true(scene->photos[2].test && !scene->photos[3].test);
     assert_int_equal(scene->points.count, 100);
     assert_true(scene->points.radius[55] > 0.09f && scene->points.radius[55] < 0.3f);
-    char *photo = strdup(orl_scene_photo_path(scene, 3).text), *given = join(photos, "cam03.png");
+    char *photo = strdup(orl_scene_file(scene, 3, ORL_FILE_PHOTO).text), *given = join(photos, "cam03.png");
     assert_int_equal(orl_file_read(NULL, photo, SIZE_MAX / 2, &a, &size_a), ORL_OK);
     assert_int_equal(orl_file_read(NULL, given, SIZE_MAX / 2, &b, &size_b), ORL_OK);
     assert_int_equal(size_a, size_b);

@@ -136,7 +136,7 @@ static void takes_masks(void **state)
     assert_true(w->scene->photos[0].masked);
     assert_true(!w->scene->photos[1].masked && w->scene->photos[2].masked);
     says(w, "masks of 1 of 3 cameras, which their file names, are not here");
-    char *mask = strdup(orl_scene_mask_path(w->scene, 0).text);
+    char *mask = strdup(orl_scene_file(w->scene, 0, ORL_FILE_MASK).text);
     check_pixel(mask, 1, 10, (uint8_t[]){0});
     check_pixel(mask, 1, 50, (uint8_t[]){255});
     free(mask);
@@ -160,7 +160,8 @@ static void lays_alpha_on_white(void **state)
     assert_true(w->scene->photos[0].test && !w->scene->photos[1].test);
     says(w, "3 of 3 photographs have alpha");
     says(w, "1 of 4 photographs are neither for training nor for testing");
-    char *photo = strdup(orl_scene_photo_path(w->scene, 1).text), *mask = strdup(orl_scene_mask_path(w->scene, 1).text);
+    char *photo = strdup(orl_scene_file(w->scene, 1, ORL_FILE_PHOTO).text);
+    char *mask = strdup(orl_scene_file(w->scene, 1, ORL_FILE_MASK).text);
     check_pixel(photo, 3, 10, (uint8_t[]){200, 100, 50});
     check_pixel(photo, 3, 31, (uint8_t[]){227, 177, 152});
     check_pixel(photo, 3, 50, (uint8_t[]){255, 255, 255});

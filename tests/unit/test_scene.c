@@ -96,7 +96,7 @@ static void opens_a_plain_workspace(void **state)
     assert_int_equal(orl_scene_find_photo(scene, "c"), 2);
     assert_int_equal(orl_scene_find_photo(scene, "d"), -1);
     assert_int_equal(orl_scene_find_photo(scene, ""), -1);
-    char *path = strdup(orl_scene_photo_path(scene, 0).text), expected[4096];
+    char *path = strdup(orl_scene_file(scene, 0, ORL_FILE_PHOTO).text), expected[4096];
     snprintf(expected, sizeof expected, "%s/images/a.jpg", dir);
     assert_string_equal(path, expected);
     free(path);

@@ -14,7 +14,7 @@ enum orl_result orl_occluders_read(const struct orl_log *log, const struct orl_s
     bool time_step = scene->frame_count > 0 && scene->frame >= 0;
     if (!(scene->photos[photo].occluded > 0) || time_step)
         return ORL_OK;
-    return orl_picture_read(log, orl_scene_occluders_path(scene, photo).text, 1, mask);
+    return orl_picture_read(log, orl_scene_file(scene, photo, ORL_FILE_OCCLUDERS).text, 1, mask);
 }
 
 static void put(const struct frame *frame, size_t photo, const int kept[2], struct orl_tex *mask)

@@ -16,7 +16,7 @@ enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene
     const struct orl_photo *photo = &scene->photos[index];
     const struct orl_camera *c = &photo->view.camera;
     linear = linear && photo->linear;
-    const struct orl_file_path path = linear ? orl_scene_linear_path(scene, index) : orl_scene_photo_path(scene, index);
+    const struct orl_file_path path = orl_scene_file(scene, index, linear ? ORL_FILE_LINEAR : ORL_FILE_PHOTO);
     ORL_TRY(linear ? orl_picture_read_linear(log, path.text, image) : orl_picture_read(log, path.text, 3, image));
     if (image->width == c->width && image->height == c->height)
         return ORL_OK;

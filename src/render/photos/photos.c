@@ -547,7 +547,7 @@ bool orl_photos_backgrounds(const struct photos *photos)
     const struct orl_scene *scene = photos->scene;
     bool all = !photos->radiance;
     for (size_t i = 0; all && i < scene->photo_count; i++)
-        all = !photos->states[i].usable || orl_path_is_file(orl_scene_background_path(scene, i).text);
+        all = !photos->states[i].usable || orl_path_is_file(orl_scene_file(scene, i, ORL_FILE_BACKGROUND).text);
     return all;
 }
 
@@ -570,7 +570,7 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     if (orl_photos_has_background(photos, photo))
         return ORL_OK;
     enum orl_result result =
-        orl_picture_read(log, orl_scene_background_path(photos->scene, photo).text, 3, &whole);
+        orl_picture_read(log, orl_scene_file(photos->scene, photo, ORL_FILE_BACKGROUND).text, 3, &whole);
     if (result == ORL_OK && !photos->background_of)
         photos->background_of =
             orl_array(log, (size_t)photos->slot_count, sizeof *photos->background_of);
@@ -595,7 +595,7 @@ enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_
                                     size_t photo, struct orl_image *mask)
 {
     const struct orl_camera *c = &scene->photos[photo].view.camera;
-    const struct orl_file_path path = orl_scene_mask_path(scene, photo);
+    const struct orl_file_path path = orl_scene_file(scene, photo, ORL_FILE_MASK);
     ORL_TRY(orl_picture_read(log, path.text, 1, mask));
     if (mask->width == c->width && mask->height == c->height)
         return ORL_OK;
