@@ -33,20 +33,15 @@ size_t orl_points_drop_flat(struct orl_points *points);
 // and 2D Gaussian splatting (f_dc_0 .. 2, opacity, scale_0 .. 1 or 2) become opaque discs, those
 // without that are more transparent than opaque. Points that
 // are not finite or beyond ORL_WORLD_MAX are dropped, and negative radii are set to 0; a warning
-// counts both.
-enum orl_result orl_points_read(const struct orl_log *log, const char *path,
+// counts both. `origin` is taken off the positions before they become floats, which hold seven digits;
+// NULL: nothing is.
+enum orl_result orl_points_read(const struct orl_log *log, const char *path, const double *origin,
                                 struct orl_points *points) ORL_CHECK_RESULT;
-// As before, and takes `origin` off the positions before they become floats, which hold seven digits.
-enum orl_result orl_points_read_from(const struct orl_log *log, const char *path,
-                                     const double origin[3],
-                                     struct orl_points *points) ORL_CHECK_RESULT;
 // Writes binary little-endian PLY: x y z nx ny nz red green blue radius photographs. small: normals
 // take a byte a component, which is exact to half a degree, and `photographs` is left out.
+// `origin` is added to the positions, which are written as doubles unless it is 0; NULL: it is 0.
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
-                                 const struct orl_points *points, bool small) ORL_CHECK_RESULT;
-// As before, and adds `origin` to the positions, which are written as doubles unless it is 0.
-enum orl_result orl_points_write_from(const struct orl_log *log, const char *path,
-                                      const struct orl_points *points, bool small,
-                                      const double origin[3]) ORL_CHECK_RESULT;
+                                 const struct orl_points *points, bool small,
+                                 const double *origin) ORL_CHECK_RESULT;
 
 #endif

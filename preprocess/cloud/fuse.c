@@ -62,7 +62,7 @@ static enum orl_result write_cloud(struct orl_job *job, const char *path, struct
 {
     for (size_t i = 0; i < points->count; i++)
         points->radius[i] = 0; // the next stage sets the radius
-    enum orl_result result = orl_points_write(job->log, path, points, false);
+    enum orl_result result = orl_points_write(job->log, path, points, false, NULL);
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
     return result;

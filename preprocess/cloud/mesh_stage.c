@@ -64,7 +64,7 @@ static enum orl_result write_points(const struct orl_job *job, const char *to)
     enum orl_result result = orl_lod_read_cloud(job->log, job->dir, MESH_POINTS, &points);
     if (result == ORL_OK && points.count)
         result = crop(job->log, &points);
-    ORL_THEN(result, orl_points_write(job->log, to, &points, false));
+    ORL_THEN(result, orl_points_write(job->log, to, &points, false, NULL));
     orl_points_finish(&points);
     return result;
 }
@@ -115,7 +115,7 @@ static enum orl_result write_mesh(const struct orl_job *job, const char *from, s
 {
     struct orl_mesh mesh = {0};
     size_t most = detail_of(job->params).triangles;
-    enum orl_result result = orl_mesh_read(job->log, from, &mesh);
+    enum orl_result result = orl_mesh_read(job->log, from, NULL, &mesh);
     if (result == ORL_OK && mesh.triangle_count > most)
         result = orl_mesh_decimate(job->log, most, &mesh);
     ORL_THEN(result, orl_mesh_set_normals(job->log, &mesh));

@@ -104,14 +104,14 @@ enum orl_result orl_import_write_points(const struct import_job *job, size_t *co
 {
     struct orl_points points;
     const char *file = job->params->points_file;
-    ORL_TRY(file ? orl_points_read_from(job->log, file, job->known.origin, &points)
+    ORL_TRY(file ? orl_points_read(job->log, file, job->known.origin, &points)
                  : orl_points_init(job->log, &points, 0));
     enum orl_result result = ORL_OK;
     if (file && !points.count)
         result = orl_fail(job->log, ORL_ERR_DATA, "%s: no usable points", file);
     else if (points.count)
         result = complete_points(job, &points);
-    ORL_THEN(result, orl_points_write(job->log, ORL_PATH(job->dir, "points.ply"), &points, false));
+    ORL_THEN(result, orl_points_write(job->log, ORL_PATH(job->dir, "points.ply"), &points, false, NULL));
     *count = points.count;
     orl_points_finish(&points);
     return result;
@@ -158,9 +158,9 @@ static enum orl_result write_mesh(struct import_job *job, const char *folder,
                                   size_t *triangles)
 {
     struct orl_mesh mesh = {0};
-    enum orl_result result = job->params->mesh ? orl_mesh_read_from(job->log, job->params->mesh,
-                                                                    job->known.origin, &mesh)
-                                               : carve_mesh(job, folder, &mesh);
+    const char *file = job->params->mesh;
+    enum orl_result result = file ? orl_mesh_read(job->log, file, job->known.origin, &mesh)
+                                  : carve_mesh(job, folder, &mesh);
     if (result == ORL_OK && !mesh.normal)
         result = orl_mesh_set_normals(job->log, &mesh);
     ORL_THEN(result, orl_mesh_write(job->log, ORL_PATH(job->dir, "%smesh.ply", folder), &mesh));

@@ -311,7 +311,7 @@ static enum orl_result begin(struct refine *r)
     struct orl_mesh mesh = {0};
     const struct orl_file_path path = orl_scene_mesh_path(r->scene);
     if (r->scene->points.count == 0 && orl_path_is_file(path.text))
-        ORL_TRY(orl_mesh_read(r->log, path.text, &mesh));
+        ORL_TRY(orl_mesh_read(r->log, path.text, NULL, &mesh));
     enum orl_result result = make_splats(r, &mesh);
     orl_mesh_finish(&mesh);
     return result;

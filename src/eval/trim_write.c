@@ -173,7 +173,7 @@ static enum orl_result write_parts(const struct writer *w)
     static const char *const trees[] = {"masks", "background", "occluders", "images_linear",
                                          "frames", "mesh.ply"};
     enum orl_result result = write_photos(w);
-    ORL_THEN(result, orl_points_write(w->log, ORL_PATH(w->out, "points.ply"), &w->model->scene.points, true));
+    ORL_THEN(result, orl_points_write(w->log, ORL_PATH(w->out, "points.ply"), &w->model->scene.points, true, NULL));
     ORL_THEN(result, orl_subset_write_model(w->log, w->source->scene, w->keep, w->out));
     ORL_THEN(result, orl_subset_add_checksums(w->log, w->out, w->sums));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(trees); i++)

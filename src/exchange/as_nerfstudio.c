@@ -59,7 +59,7 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
     }
     if (result == ORL_OK && scene->points.count) { // a cloud of none is no start for training
         json_object_set_new(root, "ply_file_path", json_string("points.ply"));
-        result = orl_points_write_from(log, ORL_PATH(dir, "points.ply"), &scene->points, false, scene->origin);
+        result = orl_points_write(log, ORL_PATH(dir, "points.ply"), &scene->points, false, scene->origin);
     }
     ORL_THEN(result, orl_json_write(log, ORL_PATH(dir, "transforms.json"), root));
     json_decref(root);

@@ -7,7 +7,7 @@
 static ORL_EXPORT_WRITER(write_ply)
 {
     (void)progress;
-    return orl_points_write_from(log, params->out, &scene->points, false, scene->origin);
+    return orl_points_write(log, params->out, &scene->points, false, scene->origin);
 }
 
 // nerfstudio's folder and a Python script that opens it in Blender, whose coordinates are floats: those of the scene, near 0.

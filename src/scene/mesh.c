@@ -53,17 +53,14 @@ static enum orl_result check(const struct orl_log *log, const char *path,
     return ORL_OK;
 }
 
-enum orl_result orl_mesh_read(const struct orl_log *log, const char *path, struct orl_mesh *mesh)
+enum orl_result orl_mesh_read(const struct orl_log *log, const char *path, const double *origin,
+                              struct orl_mesh *mesh)
 {
-    return orl_mesh_read_from(log, path, (const double[3]){0}, mesh);
-}
-
-enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
-                                   const double origin[3], struct orl_mesh *mesh)
-{
-    struct orl_mesh_builder builder = {.origin = {origin[0], origin[1], origin[2]}};
+    struct orl_mesh_builder builder = {0};
     char magic[4] = "";
     memset(mesh, 0, sizeof *mesh);
+    if (origin)
+        memcpy(builder.origin, origin, sizeof builder.origin);
     FILE *stream;
     ORL_TRY(orl_file_open(log, path, &stream));
     size_t got = fread(magic, 1, 3, stream);

@@ -17,12 +17,10 @@ void orl_mesh_finish(struct orl_mesh *mesh);
 // Reads PLY (ascii or binary little endian: x y z, optional nx ny nz and red green blue; faces as
 // vertex_indices or vertex_index) and Wavefront OBJ (v with optional colour, f), recognised by
 // content. Polygons become fans of triangles. ORL_ERR_FORMAT: an index of a missing vertex, a
-// vertex that is not finite, or no face.
-enum orl_result orl_mesh_read(const struct orl_log *log, const char *path,
+// vertex that is not finite, or no face. `origin` is taken off the positions before they become
+// floats; NULL: nothing is.
+enum orl_result orl_mesh_read(const struct orl_log *log, const char *path, const double *origin,
                               struct orl_mesh *mesh) ORL_CHECK_RESULT;
-// As before, and takes `origin` off the positions before they become floats.
-enum orl_result orl_mesh_read_from(const struct orl_log *log, const char *path,
-                                   const double origin[3], struct orl_mesh *mesh) ORL_CHECK_RESULT;
 // Writes binary little-endian PLY, atomically.
 enum orl_result orl_mesh_write(const struct orl_log *log, const char *path,
                                const struct orl_mesh *mesh) ORL_CHECK_RESULT;

@@ -237,7 +237,7 @@ enum orl_result orl_lod_read_cloud(const struct orl_log *log, const char *dir, s
     const char *paged = ORL_PATH(dir, ORL_LOD_NAME);
     memset(points, 0, sizeof *points);
     if (!orl_path_is_file(paged))
-        return orl_points_read(log, ORL_PATH(dir, "points.ply"), points);
+        return orl_points_read(log, ORL_PATH(dir, "points.ply"), NULL, points);
     enum orl_result result = orl_lod_open(log, paged, &lod);
     ORL_THEN(result, orl_lod_sample(lod, most, points));
     orl_lod_close(&lod);

@@ -143,16 +143,10 @@ void orl_point_writer_finish(struct orl_point_writer *writer)
 }
 
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
-                                 const struct orl_points *points, bool small)
-{
-    return orl_points_write_from(log, path, points, small, (const double[3]){0});
-}
-
-enum orl_result orl_points_write_from(const struct orl_log *log, const char *path,
-                                      const struct orl_points *points, bool small, const double origin[3])
+                                 const struct orl_points *points, bool small, const double *origin)
 {
     struct orl_point_writer writer;
-    bool far = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
+    bool far = origin && (origin[0] != 0 || origin[1] != 0 || origin[2] != 0);
     enum orl_result result =
         orl_point_writer_begin(log, path, points->count, small, far ? origin : NULL, &writer);
     ORL_THEN(result, orl_point_writer_add(&writer, points));

@@ -167,15 +167,10 @@ static enum orl_result find_vertices(struct orl_ply *ply, const struct orl_ply_e
 
 static const double nowhere[3]; // the origin that files have unless told otherwise
 
-enum orl_result orl_points_read(const struct orl_log *log, const char *path,
+enum orl_result orl_points_read(const struct orl_log *log, const char *path, const double *origin,
                                 struct orl_points *points)
 {
-    return orl_points_read_from(log, path, nowhere, points);
-}
-
-enum orl_result orl_points_read_from(const struct orl_log *log, const char *path,
-                                     const double origin[3], struct orl_points *points)
-{
+    origin = origin ? origin : nowhere;
     memset(points, 0, sizeof *points);
     struct orl_ply ply;
     const struct orl_ply_element *vertex = NULL;

@@ -243,7 +243,7 @@ static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene
 static enum orl_result read_points(const struct orl_log *log, struct orl_scene *scene,
                                    const char *path, bool may_be_empty)
 {
-    enum orl_result result = orl_points_read(log, path, &scene->points);
+    enum orl_result result = orl_points_read(log, path, NULL, &scene->points);
     // A scene with a manifest may have no points: methods that use silhouettes need none.
     if (result != ORL_OK || (may_be_empty && !scene->points.count))
         return result;

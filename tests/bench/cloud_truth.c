@@ -184,7 +184,7 @@ int main(int argc, char **argv)
     if (result == ORL_OK)
         result = orl_colmap_read(&log, true_sparse, &truth);
     if (result == ORL_OK)
-        result = orl_points_read(&log, argv[2], &points);
+        result = orl_points_read(&log, argv[2], NULL, &points);
     if (result == ORL_OK && !align(&model, &truth, &similarity))
         result = orl_fail(&log, ORL_ERR_DATA, "%s and %s share fewer than three cameras", argv[1],
                           argv[3]);

@@ -80,7 +80,7 @@ int main(int argc, char **argv)
     char *ply = orl_path_join(&log, argv[1], "points.ply");
     FILE *out = NULL;
     int status = 1;
-    if (ply && orl_points_read(&log, ply, &points) == ORL_OK && (out = fopen(argv[3], "wb")))
+    if (ply && orl_points_read(&log, ply, NULL, &points) == ORL_OK && (out = fopen(argv[3], "wb")))
         status = write_cloud(&points, times, out) ? 0 : 1;
     if (status)
         perror(argv[3]);

@@ -127,7 +127,7 @@ static enum orl_result make(struct job *job)
     char *points = orl_path_join(&job->log, job->scene, "points.ply");
     char *manifest = orl_path_join(&job->log, job->scene, "scene.json");
     if (result == ORL_OK)
-        result = orl_points_write(&job->log, points, &job->points, false);
+        result = orl_points_write(&job->log, points, &job->points, false, NULL);
     json_t *root = json_pack("{s:s, s:i, s:o}", "format", "oriel scene", "version", 1,
                              "photographs", photos);
     if (result == ORL_OK && json_dump_file(root, manifest, JSON_INDENT(1)) != 0)

@@ -157,7 +157,7 @@ void fuzz_mesh(const uint8_t *data, size_t size)
 {
     struct orl_mesh mesh, again;
     fuzz_save("mesh", data, size);
-    if (orl_mesh_read(&fuzz_log, fuzz_path("mesh"), &mesh) != ORL_OK)
+    if (orl_mesh_read(&fuzz_log, fuzz_path("mesh"), NULL, &mesh) != ORL_OK)
         return;
     fuzz_require(mesh.triangle_count > 0, "a mesh has faces");
     for (size_t i = 0; i < mesh.triangle_count; i++)
@@ -169,7 +169,7 @@ void fuzz_mesh(const uint8_t *data, size_t size)
             fuzz_require(isfinite(mesh.position[i][k]) && fabsf(mesh.normal[i][k]) <= 1.001f,
                          "vertices are usable");
     fuzz_require(orl_mesh_write(&fuzz_log, fuzz_path("again"), &mesh) == ORL_OK &&
-                     orl_mesh_read(&fuzz_log, fuzz_path("again"), &again) == ORL_OK &&
+                     orl_mesh_read(&fuzz_log, fuzz_path("again"), NULL, &again) == ORL_OK &&
                      again.triangle_count == mesh.triangle_count, "a mesh can be written");
     fuzz_require(orl_mesh_decimate(&fuzz_log, mesh.triangle_count / 2, &mesh) == ORL_OK,
                  "a mesh can be made simpler");

@@ -99,8 +99,8 @@ static void use_points(struct orl_points *points)
                          isfinite(points->radius[i]), "points are usable");
     if (points->count > 256)
         return;
-    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("again.ply"), points, false) == ORL_OK &&
-                     orl_points_read(&fuzz_log, fuzz_path("again.ply"), &other) == ORL_OK &&
+    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("again.ply"), points, false, NULL) == ORL_OK &&
+                     orl_points_read(&fuzz_log, fuzz_path("again.ply"), NULL, &other) == ORL_OK &&
                      other.count == points->count, "points can be written");
     fuzz_require(orl_points_set_radii(&fuzz_log, NULL, &radii, &view, 1, points) == ORL_OK,
                  "radii are found");
@@ -114,7 +114,7 @@ void fuzz_ply(const uint8_t *data, size_t size)
 {
     struct orl_points points;
     fuzz_save("points.ply", data, size);
-    if (orl_points_read(&fuzz_log, fuzz_path("points.ply"), &points) == ORL_OK)
+    if (orl_points_read(&fuzz_log, fuzz_path("points.ply"), NULL, &points) == ORL_OK)
         use_points(&points);
     orl_points_finish(&points);
 }
@@ -188,7 +188,7 @@ static void save_changed_lod(size_t count, const uint8_t *data, size_t size)
         points.position[i][1] = (float)(i / 20);
         points.radius[i] = 1;
     }
-    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("points.ply"), &points, false) == ORL_OK &&
+    fuzz_require(orl_points_write(&fuzz_log, fuzz_path("points.ply"), &points, false, NULL) == ORL_OK &&
                      write_lod() == ORL_OK && use_lod() == count &&
                      orl_file_read(&fuzz_log, fuzz_path(ORL_LOD_NAME), SIZE_MAX / 2, &file,
                                    &length) == ORL_OK,

@@ -229,7 +229,7 @@ static void open_pages(struct paged *p, size_t max_bytes)
     make_wall(&p->s);
     assert_int_equal(test_file_make("points.ply", &p->dir, &p->ply), 0);
     p->file = orl_path_join(NULL, p->dir, ORL_LOD_NAME);
-    assert_int_equal(orl_points_write(NULL, p->ply, &p->s.points, false), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, p->ply, &p->s.points, false, NULL), ORL_OK);
     assert_int_equal(orl_lod_write(NULL, NULL, &params, p->ply, p->file), ORL_OK);
     assert_int_equal(orl_lod_open(NULL, p->file, &p->lod), ORL_OK);
     const struct orl_scene scene = {.points = p->s.points, .lod = p->lod};

@@ -188,7 +188,7 @@ static void save_scene(const struct fixture *f)
     const struct orl_colmap_model model = {.cameras = cameras, .camera_count = count,
                                            .images = images, .image_count = count};
     assert_int_equal(orl_colmap_write(NULL, sparse, &model), ORL_OK);
-    assert_int_equal(orl_points_write(NULL, points, &f->scene.points, false), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, points, &f->scene.points, false, NULL), ORL_OK);
     free(points);
     free(sparse);
     free(manifest);

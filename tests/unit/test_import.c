@@ -140,9 +140,9 @@ static void imports_sequences(void **state)
     // The hull holds the true figure, of which the held-out camera carved nothing.
     char *path = strdup(orl_scene_mesh_path(scene).text);
     struct orl_mesh mesh, figure;
-    assert_int_equal(orl_mesh_read(NULL, path, &mesh), ORL_OK);
+    assert_int_equal(orl_mesh_read(NULL, path, NULL, &mesh), ORL_OK);
     truth = join(w->set, "mesh/00000.ply");
-    assert_int_equal(orl_mesh_read(NULL, truth, &figure), ORL_OK);
+    assert_int_equal(orl_mesh_read(NULL, truth, NULL, &figure), ORL_OK);
     assert_true(mesh_volume(&mesh) > mesh_volume(&figure));
     assert_true(mesh_volume(&mesh) < 4 * mesh_volume(&figure));
     orl_mesh_finish(&mesh);

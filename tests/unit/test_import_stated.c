@@ -329,7 +329,7 @@ static void keeps_a_far_origin(void **state)
     assert_true(fabs(centre[0]) < 100 && fabs(centre[2]) < 100);
     struct orl_mesh mesh;
     char *made = strdup(orl_scene_mesh_path(w->scene).text);
-    assert_int_equal(orl_mesh_read(NULL, made, &mesh), ORL_OK);
+    assert_int_equal(orl_mesh_read(NULL, made, NULL, &mesh), ORL_OK);
     assert_float_equal(mesh.position[0][0] + o[0], 512345.125, 1e-6);
     orl_mesh_finish(&mesh);
     struct orl_path path;
@@ -347,7 +347,7 @@ static void keeps_a_far_origin(void **state)
         struct orl_points points;
         assert_int_equal(kind->write(NULL, NULL, w->scene, &(struct orl_export_params){.out = out}),
                          ORL_OK);
-        assert_int_equal(orl_points_read_from(NULL, cloud, (double[3]){512345, 0, 5412345}, &points),
+        assert_int_equal(orl_points_read(NULL, cloud, (double[3]){512345, 0, 5412345}, &points),
                          ORL_OK);
         assert_float_equal(points.position[0][0], 0.125, 1e-6);
         assert_float_equal(points.position[0][2], -5, 1e-6);

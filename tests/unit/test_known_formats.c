@@ -588,18 +588,18 @@ static void reads_far_points_and_meshes(void **state)
          "property float z\nend_header\n512345.125 1 5412345.25\n");
     char *cloud = test_path(w->dir, "far.ply"), *obj = test_path(w->dir, "far.obj");
     char *coarse = test_path(w->dir, "coarse.ply");
-    assert_int_equal(orl_points_read_from(NULL, cloud, origin, &points), ORL_OK);
+    assert_int_equal(orl_points_read(NULL, cloud, origin, &points), ORL_OK);
     assert_float_equal(points.position[0][0], 0.125, 0);
     assert_float_equal(points.position[0][2], 0.25, 0);
     orl_points_finish(&points);
     const char *const meshes[] = {cloud, obj};
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(orl_mesh_read_from(NULL, meshes[i], origin, &mesh), ORL_OK);
+        assert_int_equal(orl_mesh_read(NULL, meshes[i], origin, &mesh), ORL_OK);
         assert_float_equal(mesh.position[0][0], 0.125, 0);
         assert_float_equal(mesh.position[0][2], 0.25, 0);
         orl_mesh_finish(&mesh);
     }
-    assert_int_equal(orl_points_read_from(&w->log, coarse, origin, &points), ORL_OK);
+    assert_int_equal(orl_points_read(&w->log, coarse, origin, &points), ORL_OK);
     says(w, "32-bit floats, which are too coarse");
     orl_points_finish(&points);
     free(cloud);

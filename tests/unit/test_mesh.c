@@ -27,7 +27,7 @@ static enum orl_result read_bytes(const struct orl_log *log, const void *data, s
                                   struct orl_mesh *mesh)
 {
     assert_int_equal(orl_file_write(NULL, file, data, size), ORL_OK);
-    return orl_mesh_read(log, file, mesh);
+    return orl_mesh_read(log, file, NULL, mesh);
 }
 
 static enum orl_result read_text(const struct orl_log *log, const char *text,
@@ -93,7 +93,7 @@ static void round_trips(void **state)
     assert_int_equal(orl_mesh_set_normals(NULL, &mesh), ORL_OK);
     assert_float_equal(mesh.normal[1][2], 1, 1e-6);
     assert_int_equal(orl_mesh_write(NULL, file, &mesh), ORL_OK);
-    assert_int_equal(orl_mesh_read(NULL, file, &again), ORL_OK);
+    assert_int_equal(orl_mesh_read(NULL, file, NULL, &again), ORL_OK);
     assert_memory_equal(mesh.position, again.position, 4 * sizeof *mesh.position);
     assert_memory_equal(mesh.normal, again.normal, 4 * sizeof *mesh.normal);
     assert_memory_equal(mesh.color, again.color, 4 * sizeof *mesh.color);
@@ -162,7 +162,7 @@ static void refuses_damage(void **state)
         assert_null(mesh.position);
     }
     struct orl_mesh mesh;
-    assert_int_equal(orl_mesh_read(NULL, "/nowhere/x.ply", &mesh), ORL_ERR_NOT_FOUND);
+    assert_int_equal(orl_mesh_read(NULL, "/nowhere/x.ply", NULL, &mesh), ORL_ERR_NOT_FOUND);
 }
 
 // --- surfaces ---
@@ -208,7 +208,7 @@ static void waits_for_no_fifo(void **state)
     struct orl_mesh mesh;
     assert_int_equal(mkfifo(path, 0600), 0);
     alarm(20);
-    assert_int_equal(orl_mesh_read(NULL, path, &mesh), ORL_ERR_IO);
+    assert_int_equal(orl_mesh_read(NULL, path, NULL, &mesh), ORL_ERR_IO);
     alarm(0);
     unlink(path);
     free(path);

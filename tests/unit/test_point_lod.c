@@ -46,7 +46,7 @@ static void write_wall(float radius)
         wall.color[i][0] = (uint8_t)(at % ROW / 2);
         wall.color[i][1] = (uint8_t)(at / ROW / 2);
     }
-    assert_int_equal(orl_points_write(NULL, ply, &wall, false), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, ply, &wall, false, NULL), ORL_OK);
     orl_points_finish(&wall);
 }
 
@@ -212,7 +212,7 @@ static void radii_in_parts_are_those_of_the_whole(void **state)
                                           .view_count = 2};
     struct orl_points ground, parts;
     make_ground(&ground);
-    assert_int_equal(orl_points_write(NULL, ply, &ground, false), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, ply, &ground, false, NULL), ORL_OK);
     struct orl_lod *lod = write_and_open(&params);
     float *expected = calloc(ground.count, sizeof *expected);
     assert_non_null(expected);

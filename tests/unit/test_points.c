@@ -34,8 +34,8 @@ static void round_trips(void **state)
     snprintf(path, sizeof path, "%s/points.ply", dir);
     struct orl_points points, back;
     make_points(&points, 7);
-    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_OK);
-    assert_int_equal(orl_points_read(NULL, path, &back), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, path, &points, false, NULL), ORL_OK);
+    assert_int_equal(orl_points_read(NULL, path, NULL, &back), ORL_OK);
     assert_int_equal(back.count, 7);
     assert_memory_equal(back.position, points.position, 7 * sizeof *points.position);
     assert_memory_equal(back.normal, points.normal, 7 * sizeof *points.normal);
@@ -65,7 +65,7 @@ static void reads_ascii(void **state)
         "-3 -1 99 -2.5  0 0 0  0 0 2\n3 0 1 1\n";
     save(path, text, sizeof text - 1);
     struct orl_points points;
-    assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+    assert_int_equal(orl_points_read(NULL, path, NULL, &points), ORL_OK);
     assert_int_equal(points.count, 2);
     const float expected[2][3] = {{1, 2, 3}, {-1, -2.5f, -3}};
     assert_memory_equal(points.position, expected, sizeof expected);
@@ -101,7 +101,7 @@ static void scales_colours_of_other_types(void **state)
                               "1 2 3 %s\n", t, cases[i].names[0], t, cases[i].names[1], t,
                               cases[i].names[2], cases[i].colours);
         save(path, text, (size_t)length);
-        assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+        assert_int_equal(orl_points_read(NULL, path, NULL, &points), ORL_OK);
         assert_int_equal(points.count, 1);
         assert_memory_equal(points.color[0], want, 3);
         assert_float_equal(points.position[0][2], 3, 0);
@@ -121,7 +121,7 @@ static void says_that_there_are_no_colours(void **state)
     struct said said;
     struct orl_log log = log_to(&said);
     struct orl_points points;
-    assert_int_equal(orl_points_read(&log, path, &points), ORL_OK);
+    assert_int_equal(orl_points_read(&log, path, NULL, &points), ORL_OK);
     assert_non_null(strstr(said.text, "no colours"));
     orl_points_finish(&points);
     test_dir_remove(dir);
@@ -165,7 +165,7 @@ static void refuses_bad_headers(void **state)
         struct said said;
         struct orl_log log = log_to(&said);
         struct orl_points points;
-        assert_int_equal(orl_points_read(&log, path, &points), ORL_ERR_FORMAT);
+        assert_int_equal(orl_points_read(&log, path, NULL, &points), ORL_ERR_FORMAT);
         assert_null(points.position);
         if (!strstr(said.text, cases[i].why) || !strstr(said.text, "points.ply: byte "))
             fail_msg("case %zu: \"%s\" does not say \"%s\"", i, said.text, cases[i].why);
@@ -180,14 +180,14 @@ static void refuses_truncated(void **state)
     snprintf(path, sizeof path, "%s/points.ply", dir);
     struct orl_points points;
     make_points(&points, 3);
-    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, path, &points, false, NULL), ORL_OK);
     orl_points_finish(&points);
     uint8_t *data;
     size_t whole;
     assert_int_equal(orl_file_read(NULL, path, 4096, &data, &whole), ORL_OK);
     for (size_t size = 0; size < whole; size++) {
         save(path, data, size);
-        assert_int_equal(orl_points_read(NULL, path, &points), ORL_ERR_FORMAT);
+        assert_int_equal(orl_points_read(NULL, path, NULL, &points), ORL_ERR_FORMAT);
         assert_null(points.position);
     }
     free(data);
@@ -206,11 +206,11 @@ static void drops_what_is_not_finite(void **state)
     points.radius[2] = -1;
     points.radius[3] = NAN;
     points.normal[5][0] = NAN;
-    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_OK);
+    assert_int_equal(orl_points_write(NULL, path, &points, false, NULL), ORL_OK);
     orl_points_finish(&points);
     struct said said;
     struct orl_log log = log_to(&said);
-    assert_int_equal(orl_points_read(&log, path, &points), ORL_OK);
+    assert_int_equal(orl_points_read(&log, path, NULL, &points), ORL_OK);
     assert_int_equal(points.count, 4);
     assert_float_equal(points.position[1][0], 2, 0);
     assert_float_equal(points.radius[1], 0, 0);
@@ -241,7 +241,7 @@ static void reads_gaussians_as_discs(void **state)
         "4 5 6 0 0 0 0 0 0 0.5 -2 -1 -5 -3 1 0 0 0\n";
     save(path, text, sizeof text - 1);
     struct orl_points points;
-    assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+    assert_int_equal(orl_points_read(NULL, path, NULL, &points), ORL_OK);
     assert_int_equal(points.count, 1);
     assert_float_equal(points.position[0][2], 3, 0);
     assert_int_equal(points.color[0][0], 255); // 0.5 + 0.2821 * 1.7725
@@ -267,7 +267,7 @@ static void reads_gaussian_discs(void **state)
                  has_radius ? "property float radius\n" : "", has_radius ? "7" : "");
         save(path, text, strlen(text));
         struct orl_points points;
-        assert_int_equal(orl_points_read(NULL, path, &points), ORL_OK);
+        assert_int_equal(orl_points_read(NULL, path, NULL, &points), ORL_OK);
         assert_int_equal(points.count, 1);
         assert_int_equal(points.color[0][0], 255);
         assert_float_equal(points.radius[0], has_radius ? 7 : exp(-2), 1e-6);
@@ -289,7 +289,7 @@ static void leaves_nothing_when_the_disk_is_full(void **state)
     small = old;
     small.rlim_cur = 8192;
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    enum orl_result result = orl_points_write(NULL, path, &points, false);
+    enum orl_result result = orl_points_write(NULL, path, &points, false, NULL);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
     assert_int_equal(result, ORL_ERR_IO);
     struct orl_names names;
@@ -299,7 +299,7 @@ static void leaves_nothing_when_the_disk_is_full(void **state)
     // Below a regular file nothing can be written, not even by root.
     save(path, "x", 1);
     strcat(path, "/points.ply");
-    assert_int_equal(orl_points_write(NULL, path, &points, false), ORL_ERR_IO);
+    assert_int_equal(orl_points_write(NULL, path, &points, false, NULL), ORL_ERR_IO);
     orl_points_finish(&points);
     test_dir_remove(dir);
 }

@@ -83,7 +83,7 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
     if (!orl_path_is_file(path.text))
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: not there; --mesh of oriel prepare or oriel import makes one", path.text);
-    ORL_TRY(orl_mesh_read(log, path.text, &state->mesh));
+    ORL_TRY(orl_mesh_read(log, path.text, NULL, &state->mesh));
     return orl_mesh_state_upload(gpu, state);
 }
 
