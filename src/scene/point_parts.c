@@ -87,12 +87,12 @@ static enum orl_result find_cube(struct maker *m)
 
 // --- cells ---
 
-static uint32_t cell_of(const struct maker *m, const float position[3])
+static uint32_t cell_at(const struct point_cube *cube, const float position[3])
 {
-    return (uint32_t)(orl_point_cube_morton(&m->parts->cube, position) >> (63 - 3 * AXIS_BITS));
+    return (uint32_t)(orl_point_cube_morton(cube, position) >> (63 - 3 * AXIS_BITS));
 }
 
-// Every third bit of a Morton code, and the reverse.
+// Every third bit of a Morton code.
 static uint32_t gather_bits(uint32_t code)
 {
     uint32_t value = 0;
@@ -101,28 +101,21 @@ static uint32_t gather_bits(uint32_t code)
     return value;
 }
 
-static uint32_t spread_bits(uint32_t value)
-{
-    uint32_t code = 0;
-    for (int k = 0; k < AXIS_BITS; k++)
-        code |= (value >> k & 1) << 3 * k;
-    return code;
-}
-
 // The cells around one, and itself; cells outside the cube are left out. How many.
 static size_t find_near(uint32_t cell, uint32_t near[NEAR])
 {
-    const int at[3] = {(int)gather_bits(cell), (int)gather_bits(cell >> 1),
-                       (int)gather_bits(cell >> 2)};
+    static const struct point_cube units = {.side = AXIS}; // in which cells are 1 wide
     size_t count = 0;
     for (int i = 0; i < NEAR; i++) {
-        const int to[3] = {at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1};
+        const int step[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        float to[3];
         bool inside = true;
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++) {
+            to[k] = (float)((int)gather_bits(cell >> k) + step[k]);
             inside = inside && to[k] >= 0 && to[k] < AXIS;
+        }
         if (inside)
-            near[count++] = spread_bits((uint32_t)to[0]) | spread_bits((uint32_t)to[1]) << 1 |
-                            spread_bits((uint32_t)to[2]) << 2;
+            near[count++] = cell_at(&units, to);
     }
     return count;
 }
@@ -182,7 +175,7 @@ static enum orl_result for_all(struct maker *m, const char *step,
 static enum orl_result count_cells(struct maker *m)
 {
     for (size_t i = 0; i < m->read.count; i++) {
-        m->counts[cell_of(m, m->read.position[i])]++;
+        m->counts[cell_at(&m->parts->cube, m->read.position[i])]++;
         m->parts->flat = m->parts->flat && !(m->read.radius[i] > 0);
     }
     m->parts->total += m->read.count;
@@ -287,7 +280,7 @@ static enum orl_result distribute(struct maker *m)
     uint32_t others[NEAR];
     for (size_t i = 0; i < m->read.count; i++) {
         const float *position = m->read.position[i];
-        uint32_t cell = cell_of(m, position);
+        uint32_t cell = cell_at(&parts->cube, position);
         size_t count = m->border[cell] ? find_others(m, position, cell, others) : 0;
         ORL_TRY(add_record(parts, &parts->parts[m->part_of[cell]].own, &m->read, i, 0));
         for (size_t k = 0; k < count; k++)
