@@ -72,7 +72,7 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
     ORL_TRY(job->skipped ? orl_dir_make(log, params->out) : ORL_ERR_MEMORY);
     job->dir = realpath(params->out, NULL);
     if (!job->dir)
-        return orl_fail(log, ORL_ERR_IO, "%s: %s", params->out, strerror(errno));
+        return orl_file_failed(log, params->out);
     bool empty = false;
     ORL_TRY(claim_folder(job, &empty));
     for (size_t i = 0; i < ORL_COUNT(dirs); i++)
@@ -178,7 +178,7 @@ enum orl_result orl_job_replace(const struct orl_job *job, const char *temp, con
 {
     const char *from = ORL_PATH(job->dir, "%s", temp), *to = ORL_PATH(job->dir, "%s", name);
     ORL_TRY(orl_dir_remove(job->log, to));
-    return rename(from, to) == 0 ? ORL_OK : orl_fail(job->log, ORL_ERR_IO, "%s: %s", to, strerror(errno));
+    return rename(from, to) == 0 ? ORL_OK : orl_file_failed(job->log, to);
 }
 
 enum orl_result orl_job_remove(const struct orl_job *job, const char *name)
@@ -198,7 +198,7 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target, cons
         return ORL_OK;
     bool unknown = errno == EPERM || errno == ENOTSUP || errno == ENOSYS || errno == EINVAL;
     if (!unknown)
-        return orl_fail(job->log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+        return orl_file_failed(job->log, path);
     uint8_t *data;
     size_t size;
     enum orl_result result = orl_file_read(job->log, target, SIZE_MAX / 2, &data, &size);

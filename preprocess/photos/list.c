@@ -234,7 +234,7 @@ static enum orl_result add_folder(struct orl_job *job, const char *path, const c
     struct folder folder = {path, given, realpath(path, NULL), up};
     enum orl_result result = ORL_OK;
     if (!folder.real)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+        result = orl_file_failed(job->log, path);
     else if (!up || !is_barred(job, &folder))
         result = add_entries(job, &folder);
     free(folder.real);

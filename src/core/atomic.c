@@ -22,11 +22,6 @@ enum {
 
 const char orl_part_prefix[] = ".oriel-part-";
 
-static enum orl_result fail_errno(const struct orl_log *log, const char *path)
-{
-    return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
-}
-
 enum orl_result orl_path_follow(const struct orl_log *log, const char *path, char target[ORL_PATH_SIZE])
 {
     char to[ORL_PATH_SIZE];
@@ -60,7 +55,7 @@ static enum orl_result begin_direct(const struct orl_log *log, const char *path,
     orl_path_print(file->path, "", "%s", path);
     orl_path_print(file->temp, "", "%s", path);
     file->fd = open(path, O_WRONLY | O_APPEND | O_NOCTTY | O_CLOEXEC);
-    return file->fd >= 0 ? ORL_OK : fail_errno(log, path);
+    return file->fd >= 0 ? ORL_OK : orl_file_failed(log, path);
 }
 
 // The final name comes last and keeps the extension, since writers may choose a format by it.
@@ -78,7 +73,7 @@ enum orl_result orl_temp_name(const struct orl_log *log, const char *prefix, con
 {
     unsigned long long number;
     if (getrandom(&number, sizeof number, 0) != sizeof number)
-        return fail_errno(log, path);
+        return orl_file_failed(log, path);
     orl_path_print(name, "", "%.*s%s%0*llx-%s", (int)(orl_path_name(path) - path), path, prefix,
                    NUMBER_DIGITS, number, name_tail(path));
     return ORL_OK;
@@ -100,7 +95,7 @@ static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_fi
         ORL_TRY(orl_temp_name(log, orl_part_prefix, file->path, file->temp));
         file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (file->fd < 0 && (errno != EEXIST || tries == TRIES_MAX))
-            return fail_errno(log, file->path);
+            return orl_file_failed(log, file->path);
     }
     // The lock tells orl_dir_sweep that a writer is active. File systems without locks lack this
     // protection.
@@ -136,7 +131,7 @@ enum orl_result orl_atomic_open(const struct orl_log *log, const char *path,
         return ORL_OK;
     if (copy >= 0)
         close(copy);
-    enum orl_result result = fail_errno(log, path);
+    enum orl_result result = orl_file_failed(log, path);
     orl_atomic_abort(file);
     return result;
 }
@@ -159,7 +154,7 @@ static bool flush_to_disk(int fd)
 static enum orl_result flush_file(const struct orl_log *log, const char *path)
 {
     int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    enum orl_result result = fd >= 0 && flush_to_disk(fd) ? ORL_OK : fail_errno(log, path);
+    enum orl_result result = fd >= 0 && flush_to_disk(fd) ? ORL_OK : orl_file_failed(log, path);
     if (fd >= 0)
         close(fd);
     return result;
@@ -169,7 +164,7 @@ enum orl_result orl_flush(const struct orl_log *log, const char *path)
 {
     struct stat st;
     if (lstat(path, &st) != 0)
-        return errno == ENOENT ? ORL_OK : fail_errno(log, path);
+        return errno == ENOENT ? ORL_OK : orl_file_failed(log, path);
     if (S_ISREG(st.st_mode))
         return flush_file(log, path);
     if (!S_ISDIR(st.st_mode))
@@ -191,14 +186,14 @@ enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_f
     struct stat st;
     bool streamed = file->stream != NULL;
     if (streamed && !close_stream(file))
-        result = fail_errno(log, file->path);
+        result = orl_file_failed(log, file->path);
     if (result == ORL_OK && !file->direct) {
         if (fstat(file->fd, &st) != 0 || !flush_to_disk(file->fd))
-            result = fail_errno(log, file->path);
+            result = orl_file_failed(log, file->path);
         else if (st.st_size == 0 && !streamed)
             result = orl_fail(log, ORL_ERR_IO, "%s: nothing was written", file->path);
         else if (rename(file->temp, file->path) != 0)
-            result = fail_errno(log, file->path);
+            result = orl_file_failed(log, file->path);
     }
     if (result == ORL_OK)
         file->direct = true; // the abort below then removes nothing

@@ -106,6 +106,11 @@ bool orl_path_is_inside(const char *dir, const char *path)
     return inside;
 }
 
+enum orl_result orl_file_failed(const struct orl_log *log, const char *path)
+{
+    return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+}
+
 enum orl_result orl_file_open(const struct orl_log *log, const char *path, FILE **stream)
 {
     // O_NONBLOCK: opening a FIFO would otherwise wait for a writer, perhaps for ever.
@@ -251,8 +256,7 @@ enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
 {
     struct stat st;
     if (lstat(path, &st) != 0)
-        return errno == ENOENT ? ORL_OK
-                               : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+        return errno == ENOENT ? ORL_OK : orl_file_failed(log, path);
     if (S_ISDIR(st.st_mode)) {
         struct orl_names names;
         enum orl_result result = orl_dir_list(log, path, &names);
@@ -266,7 +270,7 @@ enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
             return result;
     }
     if ((S_ISDIR(st.st_mode) ? rmdir(path) : unlink(path)) != 0)
-        return orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+        return orl_file_failed(log, path);
     return ORL_OK;
 }
 
@@ -316,7 +320,7 @@ enum orl_result orl_file_hash(const struct orl_log *log, const char *path, uint6
         for (size_t got; (got = fread(chunk, 1, sizeof chunk, stream)) > 0;)
             XXH3_64bits_update(state, chunk, got);
         if (ferror(stream))
-            result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+            result = orl_file_failed(log, path);
         else
             *hash = XXH3_64bits_digest(state);
         fclose(stream);

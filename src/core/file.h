@@ -32,6 +32,8 @@ bool orl_path_is_pipe(const char *path);
 // when either is missing.
 bool orl_path_is_inside(const char *dir, const char *path);
 
+// Logs what errno says of a file; returns ORL_ERR_IO.
+enum orl_result orl_file_failed(const struct orl_log *log, const char *path);
 // Reads a whole file. *data is owned by the caller (free) and followed by a
 // zero byte that *size does not count. Files larger than max_size or than the
 // available memory are refused.

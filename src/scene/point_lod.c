@@ -29,8 +29,7 @@ static enum orl_result read_at(const struct orl_lod *lod, uint64_t at, void *dat
         if (got < 0 && errno == EINTR)
             continue;
         if (got <= 0)
-            return got ? orl_fail(lod->log, ORL_ERR_IO, "%s: %s", lod->path, strerror(errno))
-                       : bad(lod, "the file is cut off");
+            return got ? orl_file_failed(lod->log, lod->path) : bad(lod, "the file is cut off");
         to += got;
         at += (uint64_t)got;
         size -= (size_t)got;
@@ -71,7 +70,7 @@ static enum orl_result read_header(struct orl_lod *lod, struct lod_header *h)
         h->table_at != LOD_PAGES_AT + h->page_count * sizeof(struct orl_lod_data))
         return bad(lod, "its header contradicts itself");
     if (fstat(lod->fd, &file) != 0)
-        return orl_fail(lod->log, ORL_ERR_IO, "%s: %s", lod->path, strerror(errno));
+        return orl_file_failed(lod->log, lod->path);
     if ((uint64_t)file.st_size < h->table_at + h->page_count * sizeof(struct orl_lod_page))
         return bad(lod, "the file is cut off");
     lod->points = h->points;
@@ -114,7 +113,7 @@ enum orl_result orl_lod_open(const struct orl_log *log, const char *path, struct
     *lod = (struct orl_lod){.log = log, .path = orl_strdup(log, path), .fd = -1};
     enum orl_result result = lod->path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK && (lod->fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK)) < 0)
-        result = orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+        result = orl_file_failed(log, path);
     ORL_THEN(result, read_header(lod, &header));
     ORL_THEN(result, read_table(lod, &header));
     if (result != ORL_OK)

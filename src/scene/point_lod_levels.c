@@ -1,5 +1,4 @@
 // The pages and levels of points.lod, from blocks in their order.
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,11 +31,6 @@ struct lod_levels {
     struct orl_points taken; // of the parent that is being made
     uint32_t order[ORL_BLOCK_POINTS];
 };
-
-static enum orl_result failed(const struct lod_levels *l)
-{
-    return orl_fail(l->log, ORL_ERR_IO, "%s: %s", l->path, strerror(errno));
-}
 
 static enum orl_result add_level(struct lod_levels *l, FILE *file)
 {
@@ -124,7 +118,7 @@ static enum orl_result flush_page(struct lod_levels *l, struct level *level)
     level->points += entry.count;
     level->pages[level->page_count++] = entry;
     if (fwrite(&level->page, sizeof level->page, 1, level->file) != 1)
-        return failed(l);
+        return orl_file_failed(l->log, l->path);
     memset(&level->page, 0, sizeof level->page);
     level->filled = 0;
     return ORL_OK;
@@ -210,11 +204,11 @@ enum orl_result orl_lod_levels_add(struct lod_levels *levels, const struct point
 
 static enum orl_result append(struct lod_levels *l, struct level *level)
 {
-    enum orl_result result = fseeko(level->file, 0, SEEK_SET) == 0 ? ORL_OK : failed(l);
+    enum orl_result result = fseeko(level->file, 0, SEEK_SET) == 0 ? ORL_OK : orl_file_failed(l->log, l->path);
     for (size_t i = 0; result == ORL_OK && i < level->page_count; i++)
         if (fread(&level->page, sizeof level->page, 1, level->file) != 1 ||
             fwrite(&level->page, sizeof level->page, 1, l->level[0]->file) != 1)
-            result = failed(l);
+            result = orl_file_failed(l->log, l->path);
     return result;
 }
 
@@ -232,7 +226,7 @@ static enum orl_result write_table(struct lod_levels *l, struct lod_header *h)
     bool written = fwrite(table, sizeof *table, h->page_count, file) == h->page_count &&
                    fseeko(file, 0, SEEK_SET) == 0 && fwrite(h, sizeof *h, 1, file) == 1;
     free(table);
-    return written ? ORL_OK : failed(l);
+    return written ? ORL_OK : orl_file_failed(l->log, l->path);
 }
 
 enum orl_result orl_lod_levels_end(struct lod_levels *l)

@@ -1,8 +1,6 @@
 // Writing points.lod: parts of the Morton curve, one after the other, are given radii, limited and
 // sorted into blocks.
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/statvfs.h>
 
 #include "core/file.h"
@@ -130,7 +128,7 @@ static enum orl_result begin(struct writer *w)
 {
     ORL_TRY(orl_atomic_open(w->log, w->path, &w->out));
     if (fseeko(w->out.stream, LOD_PAGES_AT, SEEK_SET) != 0)
-        return orl_fail(w->log, ORL_ERR_IO, "%s: %s", w->path, strerror(errno));
+        return orl_file_failed(w->log, w->path);
     return orl_lod_levels_begin(w->log, w->path, w->out.stream, &w->levels);
 }
 

@@ -55,11 +55,6 @@ struct maker {
     bool *border;           // of each cell: another part's points may be near
 };
 
-static enum orl_result failed(const struct point_parts *parts)
-{
-    return orl_fail(parts->log, ORL_ERR_IO, "%s: %s", parts->path, strerror(errno));
-}
-
 // --- extent ---
 
 // The cube of a sample that is read here and there.
@@ -251,7 +246,7 @@ static enum orl_result write_buffer(const struct point_parts *parts, struct run 
         if (put < 0 && errno == EINTR)
             continue;
         if (put < 0)
-            return failed(parts);
+            return orl_file_failed(parts->log, parts->path);
         from += put;
         at += put;
         left -= (size_t)put;
@@ -312,7 +307,7 @@ static enum orl_result open_file(struct point_parts *parts)
     struct orl_atomic_file file = {0};
     enum orl_result result = orl_atomic_begin(parts->log, parts->path, &file);
     if (result == ORL_OK && (parts->fd = fcntl(file.fd, F_DUPFD_CLOEXEC, 0)) < 0)
-        result = failed(parts);
+        result = orl_file_failed(parts->log, parts->path);
     orl_atomic_abort(&file);
     return result;
 }
@@ -383,7 +378,7 @@ static enum orl_result read_run(const struct point_parts *parts, const struct ru
         if (got < 0 && errno == EINTR)
             continue;
         if (got != (ssize_t)bytes)
-            return got < 0 ? failed(parts)
+            return got < 0 ? orl_file_failed(parts->log, parts->path)
                            : orl_fail(parts->log, ORL_ERR_IO, "%s: cannot read its parts back",
                                       parts->path);
         for (size_t i = 0; i < here; i++, points->count++) {

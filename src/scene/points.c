@@ -1,6 +1,5 @@
 #include "oriel/points.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -126,7 +125,7 @@ enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
         uint8_t record[RECORD_SIZE_MAX];
         size_t size = pack_point(points, i, writer->small, writer->origin, record);
         if (fwrite(record, size, 1, writer->file.stream) != 1)
-            return orl_fail(writer->log, ORL_ERR_IO, "%s: %s", writer->path, strerror(errno));
+            return orl_file_failed(writer->log, writer->path);
     }
     return ORL_OK;
 }

@@ -1,7 +1,6 @@
 // Reading points from PLY: one point per vertex. Files of 3D and 2D Gaussian splatting (Kerbl et al.
 // 2023, "3D Gaussian splatting for real-time radiance field rendering"; Huang et al. 2024) are read
 // as opaque discs.
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -209,7 +208,7 @@ static enum orl_result check_length(struct orl_point_stream *s)
     const struct orl_ply_element *vertex = &s->ply.elements[0];
     off_t end = fseeko(s->file, 0, SEEK_END) == 0 ? ftello(s->file) : -1;
     if (end < 0)
-        return orl_fail(s->ply.log, ORL_ERR_IO, "%s: %s", s->ply.path, strerror(errno));
+        return orl_file_failed(s->ply.log, s->ply.path);
     if (vertex->count > ((uint64_t)end - s->records_at) / vertex->least)
         return orl_ply_bad(&s->ply, "the file ends ahead of the last vertex");
     return orl_point_stream_seek(s, 0);
@@ -251,9 +250,7 @@ enum orl_result orl_point_stream_seek(struct orl_point_stream *s, uint64_t recor
 {
     off_t at = (off_t)(s->records_at + record * s->ply.elements[0].least);
     s->next = record;
-    return fseeko(s->file, at, SEEK_SET) == 0
-               ? ORL_OK
-               : orl_fail(s->ply.log, ORL_ERR_IO, "%s: %s", s->ply.path, strerror(errno));
+    return fseeko(s->file, at, SEEK_SET) == 0 ? ORL_OK : orl_file_failed(s->ply.log, s->ply.path);
 }
 
 enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
