@@ -29,6 +29,13 @@ bool orl_utf8_valid(const char *text)
     return true;
 }
 
+bool orl_text_is_one_of(const char *text, const char *const *list)
+{
+    while (*list && strcmp(text, *list) != 0)
+        list++;
+    return *list != NULL;
+}
+
 // Marks, embeddings and isolates of direction (Unicode Standard Annex 9), by which a name shows as
 // another one, and the separators of lines and paragraphs.
 static bool turns_text(const unsigned char *c)

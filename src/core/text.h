@@ -5,6 +5,8 @@
 #include "oriel/common.h"
 
 bool orl_utf8_valid(const char *text);
+// True when a list, which ends with NULL, has the text.
+bool orl_text_is_one_of(const char *text, const char *const *list);
 
 // Length of the mark that some editors put ahead of UTF-8 text: 3 or 0.
 size_t orl_utf8_mark_length(const void *text, size_t size);

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/process.h"
+#include "core/text.h"
 
 bool orl_video_is(const char *path)
 {
@@ -73,17 +74,10 @@ static enum orl_result read_tags(const struct orl_log *log, const struct orl_pro
     return result;
 }
 
-static bool is_one_of(const char *text, const char *const *known)
-{
-    while (*known && strcmp(text, *known) != 0)
-        known++;
-    return *known != NULL;
-}
-
 static bool is_told(const char *tag)
 {
     static const char *const untold[] = {"", "unknown", "unspecified", "reserved", "N/A", NULL};
-    return !is_one_of(tag, untold);
+    return !orl_text_is_one_of(tag, untold);
 }
 
 static bool is_hdr(const struct tags *tags)
@@ -94,7 +88,7 @@ static bool is_hdr(const struct tags *tags)
 static bool is_wide(const struct tags *tags)
 {
     static const char *const wide[] = {"bt2020", "smpte431", "smpte432", NULL};
-    return is_one_of(tags->primaries, wide);
+    return orl_text_is_one_of(tags->primaries, wide);
 }
 
 static enum orl_result check_tags(const struct orl_log *log, const char *path,
@@ -112,10 +106,10 @@ static enum orl_result check_tags(const struct orl_log *log, const char *path,
     if (strcmp(tags->profile, "5") == 0)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: its colours are those of Dolby Vision "
                         "profile 5, which ffmpeg does not decode; convert it to SDR", path);
-    if (is_told(tags->matrix) && !is_one_of(tags->matrix, matrices))
+    if (is_told(tags->matrix) && !orl_text_is_one_of(tags->matrix, matrices))
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: its colour matrix, %s, is not known; "
                         "convert it to BT.709", path, tags->matrix);
-    if (is_told(tags->transfer) && !is_one_of(tags->transfer, transfers))
+    if (is_told(tags->transfer) && !orl_text_is_one_of(tags->transfer, transfers))
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: its transfer curve, %s, is not known; "
                         "convert it to BT.709", path, tags->transfer);
     return ORL_OK;
@@ -149,7 +143,7 @@ static void set_filters(const struct tags *tags, bool square, struct orl_video *
     else if (is_wide(tags))
         snprintf(light, sizeof light, "format=gbrp16le,zscale=min=gbr:rin=full:tin=iec61966-2-1:"
                  "pin=%s:t=iec61966-2-1:p=bt709,", tags->primaries);
-    if (is_one_of(tags->fields, interlaced))
+    if (orl_text_is_one_of(tags->fields, interlaced))
         snprintf(video->first, sizeof video->first, "bwdif=mode=send_frame,");
     snprintf(video->colours, sizeof video->colours, "scale=%sin_color_matrix=%s%s,%sformat=gbrp,",
              stretch ? "w='2*round(iw*max(sar,1)/2)':h='2*round(ih*max(1/sar,1)/2)':" : "",

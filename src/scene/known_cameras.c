@@ -9,6 +9,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "core/order.h"
+#include "core/text.h"
 #include "scene/colmap_internal.h"
 #include "scene/known_internal.h"
 
@@ -191,11 +192,8 @@ void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *ob
     const char *key;
     json_t *value;
     json_object_foreach((json_t *)object, key, value) {
-        bool used = false;
-        for (size_t i = 0; unused->used[i] && !used; i++)
-            used = strcmp(unused->used[i], key) == 0;
-        if (!used && unused->names.count < MOST && !orl_names_contain(&unused->names, key) &&
-            orl_names_add(NULL, &unused->names, key) != ORL_OK)
+        bool known = orl_text_is_one_of(key, unused->used) || orl_names_contain(&unused->names, key);
+        if (!known && unused->names.count < MOST && orl_names_add(NULL, &unused->names, key) != ORL_OK)
             return; // the line is shorter, no more
     }
 }

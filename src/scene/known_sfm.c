@@ -6,6 +6,7 @@
 
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "scene/colmap_internal.h"
 #include "scene/json_views.h"
 #include "scene/known_internal.h"
@@ -30,11 +31,8 @@ static const char *read_opensfm_lens(const json_t *camera, struct orl_known_came
     double side, f_c[4], single;
     bool opencv_fisheye = type && strcmp(type, "fisheye_opencv") == 0;
     bool fisheye = type && (opencv_fisheye || strcmp(type, "fisheye") == 0);
-    static const char *const flat[] = {"perspective", "brown", "simple_radial", "radial"};
-    bool known = fisheye;
-    for (size_t i = 0; type && i < ORL_COUNT(flat); i++)
-        known = known || strcmp(type, flat[i]) == 0;
-    if (!known)
+    static const char *const flat[] = {"perspective", "brown", "simple_radial", "radial", NULL};
+    if (!fisheye && !(type && orl_text_is_one_of(type, flat)))
         return "its projection_type is none of perspective, brown, simple_radial, radial, fisheye and "
                "fisheye_opencv";
     out->width = orl_json_side(camera, "width");

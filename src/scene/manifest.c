@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "scene/point_lod.h"
 #include "scene/tuned_settings.h"
 
@@ -255,10 +256,7 @@ static void check_files(const struct orl_log *log, const char *dir, const json_t
     json_object_foreach(json_object_get(root, "checksums"), name, value) {
         char sum[ORL_CHECKSUM_SIZE];
         const char *told = json_string_value(value);
-        bool asked = !names;
-        for (size_t i = 0; names && names[i]; i++)
-            asked |= strcmp(names[i], name) == 0;
-        if (!asked || !told)
+        if (!told || (names && !orl_text_is_one_of(name, names)))
             continue;
         const char *path = ORL_PATH(dir, "%s", name);
         // An untrusted manifest may name any file, so only files inside the scene are read.
