@@ -30,6 +30,23 @@ static void keep_source(struct orl_job *job, struct orl_source *source, size_t *
     ++*kept;
 }
 
+// Keeps the sources that the test passes. Of those ahead of a source, the first `kept` are those that are kept.
+static void keep_those(struct orl_job *job,
+                       bool (*passes)(struct orl_job *job, struct orl_source *source, size_t kept))
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++)
+        if (passes(job, &job->sources[i], kept))
+            keep_source(job, &job->sources[i], &kept);
+    job->source_count = kept;
+}
+
+static void drop(struct orl_job *job, struct orl_source *source, const char *name, const char *why)
+{
+    orl_photos_skip(job, name, why);
+    orl_source_finish(source);
+}
+
 // Collects a decoder's messages, which become the reason in the report.
 struct reason {
     char text[512];
@@ -48,56 +65,40 @@ static void skip_for(struct orl_job *job, struct orl_source *source, const struc
     size_t length = strlen(source->path);
     bool named = strncmp(reason->text, source->path, length) == 0;
     const char *why = reason->text + (named ? length : 0);
-    orl_photos_skip(job, source->path, why + strspn(why, ": "));
-    orl_source_finish(source);
+    drop(job, source, source->path, why + strspn(why, ": "));
 }
 
-// Drops unreadable photographs that stand for a JPEG of the same name, so that the JPEG is used.
-static void drop_unreadable(struct orl_job *job)
+// Drops an unreadable photograph that stands for a JPEG of the same name, so that the JPEG is used.
+static bool is_readable(struct orl_job *job, struct orl_source *source, size_t kept)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < job->source_count; i++) {
-        struct orl_source *source = &job->sources[i];
-        struct reason reason = {"cannot be read"};
-        struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
-        struct orl_picture_info info;
-        if (orl_develop_wanted(source->given) &&
-            orl_picture_inspect(&log, source->path, &info) != ORL_OK)
-            skip_for(job, source, &reason);
-        else
-            keep_source(job, source, &kept);
-    }
-    job->source_count = kept;
+    (void)kept;
+    struct reason reason = {"cannot be read"};
+    struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
+    struct orl_picture_info info;
+    bool good = !orl_develop_wanted(source->given) || orl_picture_inspect(&log, source->path, &info) == ORL_OK;
+    if (!good)
+        skip_for(job, source, &reason);
+    return good;
 }
 
 // Drops the JPEG that a camera writes beside a RAW file: two photographs from one place would
 // mislead COLMAP.
-static void drop_jpegs_of_raw(struct orl_job *job)
+static bool is_best(struct orl_job *job, struct orl_source *source, size_t kept)
 {
-    drop_unreadable(job);
-    size_t kept = 0;
-    for (size_t i = 0; i < job->source_count; i++) {
-        struct orl_source *source = &job->sources[i];
-        const struct orl_source *better = NULL;
-        size_t stem = orl_path_stem(source->given);
-        bool may_be = orl_path_has_extension(source->given, "jpg jpeg");
-        for (size_t k = 0; may_be && k < job->source_count && !better; k++) {
-            const struct orl_source *other = &job->sources[k];
-            if (other->given && orl_develop_wanted(other->given) &&
-                orl_path_stem(other->given) == stem &&
-                strncasecmp(other->given, source->given, stem) == 0)
-                better = other;
-        }
-        if (better) {
-            char why[512];
-            snprintf(why, sizeof why, "%s holds more of the same photograph", better->given);
-            orl_photos_skip(job, source->path, why);
-            orl_source_finish(source);
-        } else {
-            keep_source(job, source, &kept);
-        }
+    (void)kept;
+    size_t stem = orl_path_stem(source->given);
+    bool best = true, may_be = orl_path_has_extension(source->given, "jpg jpeg");
+    for (size_t k = 0; may_be && k < job->source_count && best; k++) {
+        const char *other = job->sources[k].given;
+        char why[512];
+        if (!other || !orl_develop_wanted(other) || orl_path_stem(other) != stem ||
+            strncasecmp(other, source->given, stem) != 0)
+            continue;
+        snprintf(why, sizeof why, "%s holds more of the same photograph", other);
+        drop(job, source, source->path, why);
+        best = false;
     }
-    job->source_count = kept;
+    return best;
 }
 
 // A file given twice counts once. Two files of one name are an error, since COLMAP cannot tell them
@@ -195,27 +196,19 @@ static enum orl_result inspect_all(struct orl_job *job)
     return ORL_OK;
 }
 
-// Drops copies, keeping the first by name. One photograph under two names (a link, a copy) would be
-// matched with itself, and a held-out one would be known to the renderer.
-static void drop_copies(struct orl_job *job)
+// Drops a copy of a photograph whose name comes before. One photograph under two names (a link, a copy)
+// would be matched with itself, and a held-out one would be known to the renderer.
+static bool is_no_copy(struct orl_job *job, struct orl_source *source, size_t kept)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < job->source_count; i++) {
-        struct orl_source *source = &job->sources[i];
-        const struct orl_source *same = NULL;
-        for (size_t k = 0; k < kept && !same; k++)
-            if (job->sources[k].hash == source->hash)
-                same = &job->sources[k];
-        if (same) {
-            char why[512];
-            snprintf(why, sizeof why, "the same file as %s", same->given);
-            orl_photos_skip(job, source->given, why); // the path may be that of the other
-            orl_source_finish(source);
-        } else {
-            keep_source(job, source, &kept);
-        }
+    size_t k = 0;
+    while (k < kept && job->sources[k].hash != source->hash)
+        k++;
+    if (k < kept) {
+        char why[512];
+        snprintf(why, sizeof why, "the same file as %s", job->sources[k].given);
+        drop(job, source, source->given, why); // the path may be that of the other
     }
-    job->source_count = kept;
+    return k == kept;
 }
 
 // Names blurred photographs and those that show the picture of another; leaves out those that the
@@ -240,8 +233,7 @@ static enum orl_result drop_doubtful(struct orl_job *job)
                    (doubts[i].blurred && (leave_out == ORL_LEAVE_OUT_BLURRED ||
                                           leave_out == ORL_LEAVE_OUT_BOTH));
         if (out) {
-            orl_photos_skip(job, source->path, why);
-            orl_source_finish(source);
+            drop(job, source, source->path, why);
         } else {
             if (*why)
                 orl_logf(job->log, ORL_LOG_WARNING, "%s: %s (see --leave-out)", source->given, why);
@@ -307,10 +299,11 @@ enum orl_result orl_stage_collect(struct orl_job *job)
 {
     ORL_TRY(orl_photos_list(job));
     orl_masks_set_aside(job);
-    drop_jpegs_of_raw(job);
+    keep_those(job, is_readable);
+    keep_those(job, is_best);
     ORL_TRY(drop_duplicates(job));
     ORL_TRY(inspect_all(job));
-    drop_copies(job);
+    keep_those(job, is_no_copy);
     ORL_TRY(drop_doubtful(job));
     if (job->source_count < 3)
         return too_few(job);
