@@ -208,21 +208,15 @@ static enum orl_result find_place(const struct orl_log *log, const struct orl_si
     return result;
 }
 
-// True if the subject leaves the picture: the largest piece of the mask touches its border, or another one at least half as
-// large does. Smaller ones at the border are more likely things of the background that moved.
-static enum orl_result is_open(const struct orl_log *log, const struct orl_image *mask, bool *open)
-{
-    int largest, at_border;
-    enum orl_result result = orl_bridge_pieces(log, mask, &largest, &at_border);
-    *open = result == ORL_OK && at_border > 0 && 2 * at_border >= largest;
-    return result;
-}
-
 enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhouette *silhouette,
                               struct cone *cone)
 {
+    int largest, at_border;
     *cone = (struct cone){.view = silhouette->view};
-    ORL_TRY(is_open(log, &silhouette->mask, &cone->open));
+    ORL_TRY(orl_bridge_pieces(log, &silhouette->mask, &largest, &at_border));
+    // The subject leaves the picture if the largest piece of the mask touches its border, or another one at
+    // least half as large does. Smaller ones at the border are more likely things of the background that moved.
+    cone->open = at_border > 0 && 2 * at_border >= largest;
     return orl_bridge_distance(log, &silhouette->mask, &cone->distance);
 }
 
