@@ -166,10 +166,8 @@ enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
         if (files[i].optional && !orl_path_is_file(path))
             continue;
         result = orl_text_open(log, path, &l);
-        if (result == ORL_OK) {
-            result = files[i].read(&l, model);
-            orl_text_close(&l);
-        }
+        ORL_THEN(result, files[i].read(&l, model));
+        orl_text_close(&l);
     }
     return result;
 }

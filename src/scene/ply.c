@@ -73,8 +73,7 @@ static enum orl_result add_property(struct orl_ply *ply, const char *line)
     if (element->property_count == ORL_PLY_PROPERTIES_MAX)
         return orl_ply_bad(ply, "too many properties");
     size_t capacity = (size_t)element->property_count;
-    ORL_TRY(orl_grow(ply->log, (void **)&element->properties, &capacity,
-                     (size_t)element->property_count + 1, sizeof property));
+    ORL_TRY(ORL_GROW(ply->log, element->properties, capacity, element->property_count));
     element->properties[element->property_count++] = property;
     element->lists = element->lists || property.list;
     // In an ascii file a value takes at least a digit and a space.

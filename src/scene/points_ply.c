@@ -90,7 +90,6 @@ static enum orl_result find_color_scale(struct orl_ply *ply, const struct orl_pl
 {
     double record[ORL_PLY_PROPERTIES_MAX], greatest = 0;
     const size_t start = ply->at;
-    const int next = ply->next;
     enum orl_result result = ORL_OK;
     *scale = 1;
     if (property[RED] < 0 || vertex->properties[property[RED]].type == ORL_PLY_UINT8)
@@ -102,7 +101,6 @@ static enum orl_result find_color_scale(struct orl_ply *ply, const struct orl_pl
                 greatest = fmax(greatest, record[property[role]]);
     }
     ply->at = start;
-    ply->next = next;
     // Floats may exceed white.
     bool unit = orl_ply_is_float(vertex, property[RED]) && greatest < 16;
     *scale = unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
