@@ -1,5 +1,4 @@
 // The scene's files besides the photographs: sparse model, points, mesh, manifest.
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -278,14 +277,13 @@ static void set_import(const struct import_job *job, json_t *root)
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
                                           size_t triangles)
 {
-    uint64_t hash = 0;
-    ORL_TRY(orl_file_hash(job->log, ORL_PATH(job->dir, "points.ply"), &hash));
-    json_t *sums = json_pack("{s:o}", "points.ply", json_sprintf("xxh3:%016" PRIx64, hash));
+    char sum[ORL_CHECKSUM_SIZE];
+    ORL_TRY(orl_file_checksum(job->log, ORL_PATH(job->dir, "points.ply"), sum));
     json_t *root = json_pack(
-        "{s:s, s:i, s:s, s:o, s:o, s:o, s:{}, s:o}", "format", "oriel scene", "version",
+        "{s:s, s:i, s:s, s:o, s:o, s:o, s:{}, s:{s:s}}", "format", "oriel scene", "version",
         ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts",
         counts(job, points, triangles), "photographs", photographs(job), "left_out", left_out(job),
-        "stages", "checksums", sums);
+        "stages", "checksums", "points.ply", sum);
     if (root)
         set_import(job, root);
     enum orl_result result = orl_json_write(job->log, ORL_PATH(job->dir, "scene.json"), root);

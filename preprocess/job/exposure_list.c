@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/text.h"
 
 enum { LIST_MAX_BYTES = 16 << 20, FIELDS_MAX = 4 };
 
@@ -104,7 +105,7 @@ enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *pa
     enum orl_result result = orl_file_read(log, path, LIST_MAX_BYTES, &data, &size);
     int number = 1;
     // Spreadsheet programs write a byte order mark.
-    size_t mark = result == ORL_OK && size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    size_t mark = result == ORL_OK ? orl_utf8_mark_length(data, size) : 0;
     for (char *line = data ? (char *)data + mark : NULL; result == ORL_OK && line; number++) {
         char *end = strchr(line, '\n');
         if (end)
