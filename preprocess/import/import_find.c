@@ -62,11 +62,11 @@ void orl_import_found_finish(struct import_found *found)
     *found = (struct import_found){0};
 }
 
-static enum orl_result set(const struct orl_log *log, const char *dir, const char *name,
-                           enum import_kind kind, struct import_found *found)
+static enum orl_result set(const struct orl_log *log, const char *path, enum import_kind kind,
+                           struct import_found *found)
 {
     orl_import_found_finish(found);
-    found->path = orl_path_join(log, dir, name);
+    found->path = orl_strdup(log, path);
     found->kind = found->path ? kind : IMPORT_NOTHING;
     return found->path ? ORL_OK : ORL_ERR_MEMORY;
 }
@@ -111,11 +111,9 @@ static enum orl_result look_inside(const struct orl_log *log, const char *dir, c
             result = orl_fail(log, ORL_ERR_DATA, "%s: several clips, none of them named %s", dir,
                               role);
         else
-            result = set(log, dir, clip, IMPORT_CLIP, found);
+            result = set(log, ORL_PATH(dir, "%s", clip), IMPORT_CLIP, found);
     } else if (result == ORL_OK && pictures) {
-        found->path = orl_strdup(log, dir);
-        found->kind = IMPORT_FOLDER;
-        result = found->path ? ORL_OK : ORL_ERR_MEMORY;
+        result = set(log, dir, IMPORT_FOLDER, found);
     }
     orl_names_finish(&names);
     return result;
@@ -133,7 +131,7 @@ static enum orl_result look_loosely(const struct orl_log *log, const char *dir, 
                             names->items[i], name);
         only = names->items[i];
     }
-    return only ? set(log, dir, only, IMPORT_PICTURE, found) : ORL_OK;
+    return only ? set(log, ORL_PATH(dir, "%s", only), IMPORT_PICTURE, found) : ORL_OK;
 }
 
 // Looks in `dir` for the files of the camera `name`: a picture of this name with any extension; a
@@ -143,9 +141,10 @@ static enum orl_result find_files(const struct orl_log *log, const char *dir, co
                                   const char *role, bool loosely, struct import_found *found)
 {
     struct orl_names names = {0};
+    const char *named = ORL_PATH(dir, "%s", name);
     orl_import_found_finish(found);
-    if (orl_path_is_file(ORL_PATH(dir, "%s", name)) && is_picture(name))
-        return set(log, dir, name, IMPORT_PICTURE, found);
+    if (orl_path_is_file(named) && is_picture(name))
+        return set(log, named, IMPORT_PICTURE, found);
     enum orl_result result = orl_dir_list(log, dir, &names);
     for (size_t i = 0; result == ORL_OK && found->kind == IMPORT_NOTHING && i < 2 * names.count; i++) {
         const char *file = names.items[i % names.count];
@@ -155,7 +154,7 @@ static enum orl_result find_files(const struct orl_log *log, const char *dir, co
         if (orl_path_is_dir(path))
             result = look_inside(log, path, role, found);
         else if (orl_path_is_file(path) && (is_picture(file) || orl_video_is(file))) // no link to nowhere
-            result = set(log, dir, file, orl_video_is(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
+            result = set(log, path, orl_video_is(file) ? IMPORT_CLIP : IMPORT_PICTURE, found);
     }
     if (result == ORL_OK && loosely && found->kind == IMPORT_NOTHING)
         result = look_loosely(log, dir, name, &names, found);
@@ -440,9 +439,7 @@ static enum orl_result find_stated_masks(struct import_job *job)
             missing++;
             continue;
         }
-        view->mask.path = orl_strdup(job->log, path);
-        ORL_TRY_MEMORY(view->mask.path);
-        view->mask.kind = IMPORT_PICTURE;
+        ORL_TRY(set(job->log, path, IMPORT_PICTURE, &view->mask));
     }
     if (missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: masks of %zu of %zu cameras, which their file names, are not "
