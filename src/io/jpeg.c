@@ -224,6 +224,9 @@ struct jpeg_output {
 static enum orl_result encode(struct jpeg_job *job, j_compress_ptr info, struct jpeg_output *out)
 {
     const struct orl_image *image = out->image;
+    ORL_REQUIRE(job->log, image->type == ORL_PIXEL_U8 && image->data);
+    ORL_REQUIRE(job->log, image->channels == 1 || image->channels == 3);
+    ORL_REQUIRE(job->log, out->quality >= 1 && out->quality <= 100);
     if (setjmp(job->on_error))
         return orl_fail(job->log, ORL_ERR_IO, "%s: %s", job->path, job->message);
     jpeg_create_compress(info);
@@ -255,9 +258,6 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
                                const struct orl_image *image, int quality,
                                const struct orl_exif *exif)
 {
-    ORL_REQUIRE(log, image->type == ORL_PIXEL_U8 && image->data);
-    ORL_REQUIRE(log, image->channels == 1 || image->channels == 3);
-    ORL_REQUIRE(log, quality >= 1 && quality <= 100);
     struct jpeg_job job = {0};
     struct jpeg_compress_struct info = {0};
     struct orl_atomic_file file = {0};
@@ -282,9 +282,6 @@ enum orl_result orl_jpeg_write(const struct orl_log *log, const char *path,
 enum orl_result orl_jpeg_encode(const struct orl_log *log, const struct orl_image *image,
                                 int quality, uint8_t **data, size_t *size)
 {
-    ORL_REQUIRE(log, image->type == ORL_PIXEL_U8 && image->data);
-    ORL_REQUIRE(log, image->channels == 1 || image->channels == 3);
-    ORL_REQUIRE(log, quality >= 1 && quality <= 100);
     struct jpeg_job job = {0};
     struct jpeg_compress_struct info = {0};
     char *bytes = NULL;
