@@ -217,7 +217,7 @@ void orl_known_say_unused_of(const struct orl_known_source *source, const json_t
         look_into(&unused, root);
     else
         orl_known_look_for_unused(&unused, root);
-    for (; *lists; lists++)
+    for (; lists && *lists; lists++)
         look_into(&unused, json_object_get(root, *lists));
     orl_known_say_unused(source, &unused);
 }

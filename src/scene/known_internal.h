@@ -80,8 +80,8 @@ struct orl_known_unused {
 };
 void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object);
 void orl_known_say_unused(const struct orl_known_source *source, struct orl_known_unused *unused);
-// All of it for an object and the entries of those of its lists that are named, or for a list. Both
-// `used` and `lists` end with NULL.
+// All of it for an object and the entries of those of its lists that are named, or for a list.
+// `used` ends with NULL, as `lists` does; NULL: none is named.
 void orl_known_say_unused_of(const struct orl_known_source *source, const json_t *root,
                              const char *const *used, const char *const *lists);
 

@@ -220,11 +220,10 @@ enum orl_result orl_known_read_inria(const struct orl_known_source *source,
 {
     static const char *const used[] = {"id", "img_name", "width", "height", "position", "rotation", "fx",
                                        "fy", NULL};
-    static const char *const lists[] = {NULL};
     struct entry e;
     enum orl_result result = begin(source, 0.5, &e);
     ORL_THEN(result, read_list(&e, source->root, "img_name", read_inria, known));
-    orl_known_say_unused_of(source, source->root, used, lists);
+    orl_known_say_unused_of(source, source->root, used, NULL);
     return result;
 }
 

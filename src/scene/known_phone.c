@@ -93,7 +93,6 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
                                         struct orl_known_cameras *known)
 {
     static const char *const used[] = {"poses", "K", "w", "h", "perFrameIntrinsicCoeffs", NULL};
-    static const char *const lists[] = {NULL};
     const json_t *poses = json_object_get(source->root, "poses");
     // The folder of one or the other kind of export.
     const char *folder = orl_path_is_dir(ORL_PATH(known->folder, "rgb")) ? "rgb" : "rgbd";
@@ -127,6 +126,6 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
         orl_known_set_opencv(&camera, f_c, NULL, 0);
         result = orl_known_add(source->log, source->path, place, &camera, known);
     }
-    orl_known_say_unused_of(source, source->root, used, lists);
+    orl_known_say_unused_of(source, source->root, used, NULL);
     return result;
 }
