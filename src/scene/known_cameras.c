@@ -29,8 +29,8 @@ void orl_known_cameras_finish(struct orl_known_cameras *known)
 
 // --- adding cameras ---
 
-void orl_known_set_opencv(struct orl_known_camera *camera, const double f_c[4],
-                          const double *distortion, size_t count)
+void orl_known_set_lens(struct orl_known_camera *camera, const double f_c[4], const double *distortion,
+                        size_t count, bool fisheye)
 {
     double d[8] = {0};
     bool full = false, any = false;
@@ -39,7 +39,10 @@ void orl_known_set_opencv(struct orl_known_camera *camera, const double f_c[4],
         any = any || d[i] != 0;
         full = full || (i >= 4 && d[i] != 0);
     }
-    camera->model = full ? ORL_COLMAP_FULL_OPENCV : any ? ORL_COLMAP_OPENCV : ORL_COLMAP_PINHOLE;
+    camera->model = fisheye ? ORL_COLMAP_OPENCV_FISHEYE
+                    : full  ? ORL_COLMAP_FULL_OPENCV
+                    : any   ? ORL_COLMAP_OPENCV
+                            : ORL_COLMAP_PINHOLE;
     memcpy(camera->params, f_c, 4 * sizeof *f_c);
     memcpy(camera->params + 4, d, sizeof d);
 }

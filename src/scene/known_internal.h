@@ -26,10 +26,10 @@ struct orl_known_camera {
     struct orl_pose pose;
 };
 
-// Converts focal lengths, principal point and `count` of OpenCV's distortion terms k1 k2 p1 p2 k3
-// k4 k5 k6 to the simplest COLMAP model.
-void orl_known_set_opencv(struct orl_known_camera *camera, const double f_c[4],
-                          const double *distortion, size_t count);
+// Converts focal lengths, principal point and `count` of OpenCV's distortion terms, k1 k2 p1 p2 k3
+// k4 k5 k6 or of a fisheye k1 k2 k3 k4, to the simplest COLMAP model.
+void orl_known_set_lens(struct orl_known_camera *camera, const double f_c[4], const double *distortion,
+                        size_t count, bool fisheye);
 // Appends a camera. It is shared with the previous one when the two are equal. `place` names the
 // camera in messages, such as "camera 3".
 enum orl_result orl_known_add(const struct orl_log *log, const char *file, const char *place,

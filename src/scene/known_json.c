@@ -54,7 +54,7 @@ static enum orl_result read_own(const struct entry *e, const json_t *item,
     if (!(fabs(k[0][1]) * camera->height <= fabs(k[1][1])))
         return bad(e, "\"K\" has a skew, which is not supported");
     const double f_c[4] = {k[0][0], k[1][1], k[0][2] + e->shift, k[1][2] + e->shift};
-    orl_known_set_opencv(camera, f_c, dist, terms);
+    orl_known_set_lens(camera, f_c, dist, terms, false);
     return ORL_OK;
 }
 
@@ -68,7 +68,7 @@ static enum orl_result read_inria(const struct entry *e, const json_t *item,
         return bad(e, "position, rotation, width, height, fx or fy is missing or not usable");
     const struct orl_camera *c = &view.camera;
     const double f_c[4] = {c->fx, c->fy, c->cx, c->cy};
-    orl_known_set_opencv(camera, f_c, NULL, 0);
+    orl_known_set_lens(camera, f_c, NULL, 0, false);
     camera->width = c->width;
     camera->height = c->height;
     camera->pose = view.cam_from_world;
@@ -158,11 +158,7 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
         if (number(root, frame, lost[i], &other) && other != 0)
             return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: %s of its lens is not read: undistort the "
                             "pictures with the program that calibrated them", e->file, e->place, lost[i]);
-    orl_known_set_opencv(camera, f_c, terms, is_fisheye ? 0 : ORL_COUNT(brown));
-    if (is_fisheye) {
-        camera->model = ORL_COLMAP_OPENCV_FISHEYE;
-        memcpy(camera->params + 4, terms, ORL_COUNT(fisheye) * sizeof *terms);
-    }
+    orl_known_set_lens(camera, f_c, terms, is_fisheye ? ORL_COUNT(fisheye) : ORL_COUNT(brown), is_fisheye);
     return ORL_OK;
 }
 

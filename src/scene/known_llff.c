@@ -67,7 +67,7 @@ static enum orl_result read_pose(const struct orl_known_source *source, const do
     camera.width = (int)width;
     camera.height = (int)height;
     const double f_c[4] = {focal, focal, 0.5 * camera.width, 0.5 * camera.height};
-    orl_known_set_opencv(&camera, f_c, NULL, 0);
+    orl_known_set_lens(&camera, f_c, NULL, 0, false);
     return orl_known_add(source->log, source->path, path, &camera, known);
 }
 

@@ -45,7 +45,7 @@ static enum orl_result read_keyframe(const struct orl_known_source *source, cons
         f_c[3] += shift_of(source);
         camera.width = orl_json_side(root, "width");
         camera.height = orl_json_side(root, "height");
-        orl_known_set_opencv(&camera, f_c, NULL, 0);
+        orl_known_set_lens(&camera, f_c, NULL, 0, false);
         result = orl_known_add(source->log, source->path, orl_path_name(file), &camera, known);
     }
     orl_known_look_for_unused(unused, root);
@@ -123,7 +123,7 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
         const double f_c[4] = {own ? of_frame[0] : k[0], own ? of_frame[1] : k[4],
                                (own ? of_frame[2] : k[6]) + shift_of(source),
                                (own ? of_frame[3] : k[7]) + shift_of(source)};
-        orl_known_set_opencv(&camera, f_c, NULL, 0);
+        orl_known_set_lens(&camera, f_c, NULL, 0, false);
         result = orl_known_add(source->log, source->path, place, &camera, known);
     }
     orl_known_say_unused_of(source, source->root, used, NULL);

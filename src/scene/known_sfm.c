@@ -43,16 +43,11 @@ static const char *read_opensfm_lens(const json_t *camera, struct orl_known_came
     f_c[1] = side * (one ? single : term(camera, "focal_y"));
     f_c[2] = 0.5 * out->width + side * term(camera, "c_x");
     f_c[3] = 0.5 * out->height + side * term(camera, "c_y");
-    const double terms[] = {term(camera, "k1"), term(camera, "k2"), term(camera, "p1"),
-                            term(camera, "p2"), term(camera, "k3")};
-    orl_known_set_opencv(out, f_c, terms, fisheye ? 0 : ORL_COUNT(terms));
-    if (fisheye) {
-        out->model = ORL_COLMAP_OPENCV_FISHEYE;
-        out->params[4] = terms[0];
-        out->params[5] = terms[1];
-        out->params[6] = opencv_fisheye ? terms[4] : 0;
-        out->params[7] = opencv_fisheye ? term(camera, "k4") : 0;
-    }
+    const double terms[] = {term(camera, "k1"), term(camera, "k2"),
+                            term(camera, fisheye ? "k3" : "p1"), term(camera, fisheye ? "k4" : "p2"),
+                            term(camera, "k3")};
+    size_t count = opencv_fisheye ? 4 : fisheye ? 2 : ORL_COUNT(terms);
+    orl_known_set_lens(out, f_c, terms, count, fisheye);
     return NULL;
 }
 
@@ -214,13 +209,13 @@ static const char *read_meshroom_lens(const json_t *root, const json_t *lens,
     static const struct {
         const char *type;
         size_t terms;
-        int place[5]; // of each term among k1 k2 p1 p2 k3
+        int place[5]; // of each term among k1 k2 p1 p2 k3, or k1 k2 k3 k4 of a fisheye
         bool fisheye;
     } kinds[] = {{"pinhole", 0, {0}, false},        {"none", 0, {0}, false},
                  {"radial1", 1, {0}, false},        {"radialk1", 1, {0}, false},
                  {"radial3", 3, {0, 1, 4}, false},  {"radialk3", 3, {0, 1, 4}, false},
                  {"brown", 5, {0, 1, 4, 2, 3}, false},
-                 {"fisheye", 4, {0}, true},         {"fisheye4", 4, {0}, true}};
+                 {"fisheye", 4, {0, 1, 2, 3}, true}, {"fisheye4", 4, {0, 1, 2, 3}, true}};
     double f_c[4], given[5], terms[5] = {0};
     const char *type = orl_json_text(lens, "distortionType");
     const json_t *list = json_object_get(lens, "distortionParams");
@@ -232,14 +227,9 @@ static const char *read_meshroom_lens(const json_t *root, const json_t *lens,
         size_t count = json_array_size(list) && kinds[i].terms ? kinds[i].terms : 0;
         if (!read_texts(list, count, given) && count)
             return "its distortionParams are not as many numbers as its type has";
-        for (size_t k = 0; k < count && !kinds[i].fisheye; k++)
+        for (size_t k = 0; k < count; k++)
             terms[kinds[i].place[k]] = given[k];
-        orl_known_set_opencv(camera, f_c, terms, ORL_COUNT(terms));
-        if (kinds[i].fisheye) {
-            camera->model = ORL_COLMAP_OPENCV_FISHEYE;
-            for (size_t k = 0; k < 4; k++)
-                camera->params[4 + k] = k < count ? given[k] : 0;
-        }
+        orl_known_set_lens(camera, f_c, terms, ORL_COUNT(terms), kinds[i].fisheye);
         return NULL;
     }
     return problem ? problem : "its type is none of pinhole, radial1, radial3, brown and fisheye4";

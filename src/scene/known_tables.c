@@ -17,7 +17,7 @@
 static void set_inverse_radial(struct orl_known_camera *camera, const double f_c[4], double r)
 {
     const double terms[] = {-r, 3 * r * r, 0, 0, -12 * r * r * r, 0, 0, 0};
-    orl_known_set_opencv(camera, f_c, terms, ORL_COUNT(terms));
+    orl_known_set_lens(camera, f_c, terms, ORL_COUNT(terms), false);
 }
 
 // Finds the last `count` words of a line, which are numbers, and ends the line ahead of them: names may
@@ -194,7 +194,7 @@ static enum orl_result read_row(struct orl_text_lines *l, const struct heads *he
         return orl_text_bad(l, "a camera's place is absurdly far");
     const double f_c[4] = {value[F] / 36, value[F] / 36, value[PX], value[PY]};
     const double terms[] = {value[K1], value[K2], value[T1], value[T2], value[K3]};
-    orl_known_set_opencv(&camera, f_c, terms, ORL_COUNT(terms));
+    orl_known_set_lens(&camera, f_c, terms, ORL_COUNT(terms), false);
     return orl_known_add(l->log, l->path, place, &camera, known);
 }
 

@@ -30,7 +30,7 @@ static enum orl_result read_par(struct orl_text_lines *l, double shift,
     else if (k[1] != 0)
         result = orl_text_bad(l, "its K has a skew, which is not supported");
     if (result == ORL_OK) {
-        orl_known_set_opencv(&camera, (double[]){k[0], k[4], k[2] + shift, k[5] + shift}, NULL, 0);
+        orl_known_set_lens(&camera, (double[]){k[0], k[4], k[2] + shift, k[5] + shift}, NULL, 0, false);
         result = orl_known_add(l->log, l->path, place, &camera, known);
     }
     free(name);

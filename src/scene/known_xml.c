@@ -231,11 +231,7 @@ static const char *set_lens(const struct sensor *s, struct orl_known_camera *cam
     const double f_c[4] = {v[F] + v[B1], v[F], 0.5 * s->width + v[CX], 0.5 * s->height + v[CY]};
     // Metashape's p1 and p2 have the places of OpenCV's p2 and p1.
     const double brown[] = {v[K1], v[K2], v[P2], v[P1], v[K3]};
-    orl_known_set_opencv(camera, f_c, brown, fisheye ? 0 : ORL_COUNT(brown));
-    if (fisheye) {
-        camera->model = ORL_COLMAP_OPENCV_FISHEYE;
-        memcpy(camera->params + 4, v + K1, 4 * sizeof *v);
-    }
+    orl_known_set_lens(camera, f_c, fisheye ? v + K1 : brown, fisheye ? 4 : ORL_COUNT(brown), fisheye);
     return NULL;
 }
 
