@@ -2,7 +2,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/random.h>
@@ -167,17 +166,7 @@ enum orl_result orl_flush(const struct orl_log *log, const char *path)
         return errno == ENOENT ? ORL_OK : orl_file_failed(log, path);
     if (S_ISREG(st.st_mode))
         return flush_file(log, path);
-    if (!S_ISDIR(st.st_mode))
-        return ORL_OK;
-    struct orl_names names;
-    enum orl_result result = orl_dir_list(log, path, &names);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *child = orl_path_join(log, path, names.items[i]);
-        result = child ? orl_flush(log, child) : ORL_ERR_MEMORY;
-        free(child);
-    }
-    orl_names_finish(&names);
-    return result;
+    return S_ISDIR(st.st_mode) ? orl_dir_each(log, path, orl_flush) : ORL_OK;
 }
 
 enum orl_result orl_atomic_commit(const struct orl_log *log, struct orl_atomic_file *file)

@@ -252,23 +252,27 @@ enum orl_result orl_dir_list(const struct orl_log *log, const char *path, struct
     return result;
 }
 
+enum orl_result orl_dir_each(const struct orl_log *log, const char *path,
+                             enum orl_result (*use)(const struct orl_log *log, const char *path))
+{
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(log, path, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        char *child = orl_path_join(log, path, names.items[i]);
+        result = child ? use(log, child) : ORL_ERR_MEMORY;
+        free(child);
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
 enum orl_result orl_dir_remove(const struct orl_log *log, const char *path)
 {
     struct stat st;
     if (lstat(path, &st) != 0)
         return errno == ENOENT ? ORL_OK : orl_file_failed(log, path);
-    if (S_ISDIR(st.st_mode)) {
-        struct orl_names names;
-        enum orl_result result = orl_dir_list(log, path, &names);
-        for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-            char *child = orl_path_join(log, path, names.items[i]);
-            result = child ? orl_dir_remove(log, child) : ORL_ERR_MEMORY;
-            free(child);
-        }
-        orl_names_finish(&names);
-        if (result != ORL_OK)
-            return result;
-    }
+    if (S_ISDIR(st.st_mode))
+        ORL_TRY(orl_dir_each(log, path, orl_dir_remove));
     if ((S_ISDIR(st.st_mode) ? rmdir(path) : unlink(path)) != 0)
         return orl_file_failed(log, path);
     return ORL_OK;

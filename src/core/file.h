@@ -105,6 +105,9 @@ enum orl_result orl_file_read_names(const struct orl_log *log, const char *path,
 // Names of the folder's entries, sorted bytewise, without "." and "..".
 enum orl_result orl_dir_list(const struct orl_log *log, const char *path,
                              struct orl_names *names) ORL_CHECK_RESULT;
+// Does the same to all entries of a folder, in this order, until it fails.
+enum orl_result orl_dir_each(const struct orl_log *log, const char *path,
+                             enum orl_result (*use)(const struct orl_log *log, const char *path)) ORL_CHECK_RESULT;
 
 // XXH3 64-bit of the file's bytes, for change detection, not for security.
 enum orl_result orl_file_hash(const struct orl_log *log, const char *path,
