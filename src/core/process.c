@@ -149,7 +149,6 @@ enum orl_result orl_process_run(const struct orl_log *log, const struct orl_proc
     int fds[2] = {-1, -1};
     FILE *log_file = NULL;
     struct output *out = calloc(1, sizeof *out);
-    double start = orl_time_s();
     if (!out || pipe2(fds, O_CLOEXEC) != 0) {
         result = orl_fail(log, ORL_ERR_IO, "%s: cannot start: %s", params->argv[0],
                           strerror(errno));
@@ -178,7 +177,6 @@ enum orl_result orl_process_run(const struct orl_log *log, const struct orl_proc
     while (wait4(pid, &status, 0, &used) < 0 && errno == EINTR)
         continue;
     if (usage) {
-        usage->wall_s = orl_time_s() - start;
         usage->cpu_s = (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
                        1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
         usage->peak_rss_bytes = (size_t)used.ru_maxrss * 1024;

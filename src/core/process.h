@@ -16,7 +16,7 @@ struct orl_process_params {
 };
 
 struct orl_process_usage {
-    double wall_s, cpu_s;
+    double cpu_s;
     size_t peak_rss_bytes;
 };
 

@@ -25,7 +25,6 @@ struct orl_known_picture {
 };
 
 struct orl_known_cameras {
-    const char *format; // its name
     // Cameras may be distorted. `pinhole` is unset while the picture's size is missing. Images are
     // named by the last part of their paths; where two of these are equal, by the paths without the
     // folders that all have in common.

@@ -161,7 +161,6 @@ static enum orl_result read_with(const struct format *format,
                                  const struct orl_known_source *source,
                                  struct orl_known_cameras *known)
 {
-    known->format = format->name;
     ORL_TRY(format->read(source, known));
     orl_logf(source->log, ORL_LOG_INFO, "%s: %s: %zu cameras, %zu points", source->path,
              format->name, known->model.image_count, known->model.point_count);
