@@ -10,14 +10,6 @@
 enum { PARTNERS = 20 }; // that a photograph is matched with, where they are many
 static const double SAME_WAY = 0.5; // cosine of the angle between directions of view, at least
 
-static int by_views(const void *a, const void *b)
-{
-    const struct orl_pair *x = a, *y = b;
-    if (x->a != y->a)
-        return x->a < y->a ? -1 : 1;
-    return x->b < y->b ? -1 : x->b > y->b;
-}
-
 // The partners of view `a`, the nearest first; how many.
 static size_t find_partners(const struct import_job *import, size_t a, bool all,
                             struct orl_ranked *partners)
@@ -59,9 +51,9 @@ enum orl_result orl_import_pairs(const struct import_job *import, struct orl_pai
         }
     }
     if (result == ORL_OK)
-        qsort(list->items, list->count, sizeof *list->items, by_views);
+        qsort(list->items, list->count, sizeof *list->items, orl_order_pairs);
     for (size_t i = 0; i < list->count; i++) // most are in the list from both sides
-        if (!kept || by_views(&list->items[i], &list->items[kept - 1]) != 0)
+        if (!kept || orl_order_pairs(&list->items[i], &list->items[kept - 1]) != 0)
             list->items[kept++] = list->items[i];
     list->count = kept;
     free(partners);

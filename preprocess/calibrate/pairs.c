@@ -43,21 +43,13 @@ struct choice {
     uint32_t *component; // owned; of each photograph
 };
 
-static int compare_pairs(const void *a, const void *b)
-{
-    const struct orl_preempt_pair *x = a, *y = b;
-    if (x->a != y->a)
-        return x->a < y->a ? -1 : 1;
-    return x->b < y->b ? -1 : x->b > y->b;
-}
-
 // --- which pairs to try ---
 
 static struct orl_preempt_pair *find_pair(const struct choice *c, size_t count, uint32_t a,
                                           uint32_t b)
 {
     struct orl_preempt_pair key = {a < b ? a : b, a < b ? b : a, 0};
-    return count ? bsearch(&key, c->pairs, count, sizeof key, compare_pairs) : NULL;
+    return count ? bsearch(&key, c->pairs, count, sizeof key, orl_order_pairs) : NULL;
 }
 
 // `tried` pairs are in order already; the others may repeat.
@@ -77,13 +69,13 @@ static enum orl_result try_proposed(struct choice *c, size_t tried)
     size_t all = c->pair_count - tried, kept = 0;
     if (!all)
         return ORL_OK;
-    qsort(proposed, all, sizeof *proposed, compare_pairs);
+    qsort(proposed, all, sizeof *proposed, orl_order_pairs);
     for (size_t i = 0; i < all; i++)
-        if (i == 0 || compare_pairs(&proposed[i], &proposed[kept - 1]) != 0)
+        if (i == 0 || orl_order_pairs(&proposed[i], &proposed[kept - 1]) != 0)
             proposed[kept++] = proposed[i];
     c->pair_count = tried + kept;
     ORL_TRY(orl_preempt_match_all(c->log, c->progress, c->descriptors, proposed, kept));
-    qsort(c->pairs, c->pair_count, sizeof *c->pairs, compare_pairs);
+    qsort(c->pairs, c->pair_count, sizeof *c->pairs, orl_order_pairs);
     return ORL_OK;
 }
 

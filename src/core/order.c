@@ -1,6 +1,6 @@
 #include "core/order.h"
 
-#include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
 #define ORDER(function, type) \
@@ -18,6 +18,13 @@ ORDER(orl_order_sizes, size_t)
 int orl_order_texts(const void *a, const void *b)
 {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+int orl_order_pairs(const void *a, const void *b)
+{
+    const uint32_t *x = a, *y = b;
+    int first = (x[0] > y[0]) - (x[0] < y[0]);
+    return first ? first : (x[1] > y[1]) - (x[1] < y[1]);
 }
 
 int orl_order_ranked(const void *a, const void *b)

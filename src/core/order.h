@@ -10,6 +10,9 @@ int orl_order_ints(const void *a, const void *b);
 int orl_order_sizes(const void *a, const void *b); // size_t
 int orl_order_texts(const void *a, const void *b); // const char *, bytewise
 
+// Items that begin with two uint32_t: by the first, then by the second.
+int orl_order_pairs(const void *a, const void *b);
+
 // An index and what it is sorted by.
 struct orl_ranked {
     double key;

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "scene/colmap_internal.h"
 
 static void put_u32(FILE *out, uint32_t value)
@@ -68,14 +69,6 @@ static void put_images(FILE *out, const struct orl_colmap_model *model, const st
     }
 }
 
-static int compare_tracks(const void *a, const void *b)
-{
-    const struct track *x = a, *y = b;
-    if (x->point != y->point)
-        return x->point < y->point ? -1 : 1;
-    return (x->image_id > y->image_id) - (x->image_id < y->image_id);
-}
-
 // All observations by points, and one of no point behind them; NULL, logged, when memory runs out.
 static struct track *list_tracks(const struct orl_log *log, const struct orl_colmap_model *model)
 {
@@ -87,7 +80,7 @@ static struct track *list_tracks(const struct orl_log *log, const struct orl_col
         for (size_t k = 0; k < model->images[i].point_count; k++)
             tracks[count++] = (struct track){model->images[i].points[k], model->images[i].id, (uint32_t)k};
     if (tracks) {
-        qsort(tracks, total, sizeof *tracks, compare_tracks);
+        qsort(tracks, total, sizeof *tracks, orl_order_pairs);
         tracks[total].point = UINT32_MAX;
     }
     return tracks;
