@@ -79,8 +79,6 @@ static struct orl_view view_of(const struct import_job *job, size_t i)
 // Estimates radii and normals where the file has none.
 static enum orl_result complete_points(const struct import_job *job, struct orl_points *points)
 {
-    const struct orl_radii_params radii = {ORL_RADII_DEFAULTS};
-    const struct orl_radii_limits limits = {ORL_RADII_LIMITS_DEFAULTS};
     size_t count = 0, known = 0;
     for (size_t i = 0; i < points->count; i++)
         known += points->radius[i] > 0;
@@ -93,8 +91,7 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
             views[count++] = view_of(job, i);
     enum orl_result result =
         orl_points_drop_in_free_space(job->log, job->progress, views, count, points);
-    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, &radii, views, count, points));
-    ORL_THEN(result, orl_points_limit_radii(job->log, &limits, views, count, points));
+    ORL_THEN(result, orl_points_find_radii(job->log, job->progress, views, count, points));
     free(views);
     return result;
 }
