@@ -12,11 +12,6 @@
 
 // --- recognised by content ---
 
-static const json_t *first_of(const json_t *array)
-{
-    return json_array_get(array, 0);
-}
-
 static bool is_own(const json_t *root)
 {
     return json_is_array(json_object_get(root, "cameras")) && !json_object_get(root, "shots");
@@ -24,7 +19,7 @@ static bool is_own(const json_t *root)
 
 static bool is_inria(const json_t *root)
 {
-    return json_is_array(root) && !json_object_get(first_of(root), "shots");
+    return json_is_array(root) && !json_object_get(json_array_get(root, 0), "shots");
 }
 
 static bool is_transforms(const json_t *root)
@@ -34,7 +29,7 @@ static bool is_transforms(const json_t *root)
 
 static bool is_opensfm(const json_t *root)
 {
-    return json_is_array(root) && json_is_object(json_object_get(first_of(root), "shots"));
+    return json_is_array(root) && json_is_object(json_object_get(json_array_get(root, 0), "shots"));
 }
 
 static bool is_meshroom(const json_t *root)

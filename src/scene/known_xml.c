@@ -148,8 +148,7 @@ static void XMLCALL begin(void *user, const char *name, const char **attributes)
         sensor->width = atoi(attribute(attributes, "width"));
         sensor->height = atoi(attribute(attributes, "height"));
     } else if (strcmp(name, "calibration") == 0 && parent_is(r, "sensor") && sensor) {
-        const char *kind = attribute(attributes, "class");
-        r->adjusted = strcmp(kind, "initial") != 0;
+        r->adjusted = strcmp(attribute(attributes, "class"), "initial") != 0;
         if (r->adjusted) {
             sensor->calibrated = true;
             memset(sensor->value, 0, sizeof sensor->value);
