@@ -178,8 +178,7 @@ enum orl_result orl_job_find_colmap(struct orl_job *job)
     enum orl_result result = orl_process_run(job->log, &params, NULL);
     if (result == ORL_ERR_NOT_FOUND)
         return advise_missing(job);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(result);
     // Some builds end this help with a status of failure; what it printed counts.
     params.argv = options;
     params.line = find_options;

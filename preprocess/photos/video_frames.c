@@ -190,8 +190,7 @@ enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **di
         result = orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/frames"));
         ORL_THEN(result, orl_job_fresh_dir(job, temp));
         ORL_THEN(result, make_frames(&clip, made));
-        if (result == ORL_OK)
-            result = orl_flush(job->log, made); // ffmpeg does not
+        ORL_THEN(result, orl_flush(job->log, made)); // ffmpeg does not
         if (result == ORL_OK && rename(made, *dir) != 0)
             result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be renamed to %s", made, *dir);
         orl_progress_report(job->progress, "frames", 1, 1, NULL);

@@ -142,8 +142,7 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     ORL_TRY(orl_picture_check_size(job->log, job->path, width, height));
     enum orl_result result = ORL_OK;
     bool by_code = read_code_points(job, header, &result);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(result);
     header->width = (int)width;
     header->height = (int)height;
     header->bits = png_get_bit_depth(job->png, job->info);

@@ -172,8 +172,7 @@ static enum orl_result read_json(const struct orl_known_source *source,
     enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
     ORL_THEN(result, orl_json_parse(source->log, source->path, data, size, &root));
     free(data);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(result);
     const struct format *found = NULL;
     for (size_t i = 0; i < ORL_COUNT(formats) && !found; i++)
         if (formats[i].is_json && formats[i].is_json(root))

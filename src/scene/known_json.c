@@ -305,8 +305,7 @@ static enum orl_result read_frames(const struct orl_known_source *source,
         result = read_nerfstudio(&e, root, frame, &camera);
         ORL_THEN(result, orl_known_add(e.log, e.file, e.place, &camera, known));
     }
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(result);
     orl_known_say_unused_of(source, root, used, lists);
     if (!held_out && json_array_size(json_object_get(root, "test_filenames")))
         orl_logf(source->log, ORL_LOG_WARNING, "%s: test_filenames has none of the frames: none is held "

@@ -172,15 +172,12 @@ enum orl_result orl_point_order(const struct orl_log *log, const struct orl_poin
     uint32_t *curve = NULL;
     *count = 0;
     *order = NULL;
-    enum orl_result result = orl_point_curve(log, points, cube, &curve, &used);
-    if (result == ORL_OK) {
-        *order = orl_array(log, capacity, sizeof **order);
-        result = *order ? ORL_OK : ORL_ERR_MEMORY;
-    }
-    if (result == ORL_OK)
+    ORL_TRY(orl_point_curve(log, points, cube, &curve, &used));
+    *order = orl_array(log, capacity, sizeof **order);
+    if (*order)
         *count = make_blocks(points, curve, used, *order, capacity);
     free(curve);
-    return result;
+    return *order ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 // --- blocks ---

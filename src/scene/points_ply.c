@@ -131,8 +131,7 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
         else if (result == ORL_OK && set_point(points, kept, values, origin, &bad_radii))
             kept++;
     }
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(result);
     if (kept && !gaussian && property[RED] < 0)
         orl_logf(ply->log, ORL_LOG_INFO, "%s: no colours (red, green, blue): its points are grey", ply->path);
     if (transparent)

@@ -69,8 +69,7 @@ enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, cons
         return orl_fail(log, ORL_ERR_FORMAT, "%s: \"tuned\" has more than %d settings", path,
                         SETTINGS_MAX);
     scene->tuned = count ? orl_array(log, count, sizeof *scene->tuned) : NULL;
-    if (count && !scene->tuned)
-        return ORL_ERR_MEMORY;
+    ORL_TRY_MEMORY(scene->tuned || !count);
     enum orl_result result = read_defaults(log, path, root, &scene->defaults);
     json_object_foreach(all, method, record)
         json_object_foreach(json_object_get(record, "settings"), key, value)
