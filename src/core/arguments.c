@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/json.h"
-
 static void *field_of(const struct orl_option *row, void *values)
 {
     return (char *)values + row->offset;

@@ -1,7 +1,6 @@
 // An environment map, as Blender and game engines light scenes with: all directions from one
 // photograph's place, in radiance.
 #include <math.h>
-#include <string.h>
 
 #include "core/vec3.h"
 #include "exchange/kinds.h"

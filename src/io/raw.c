@@ -1,6 +1,5 @@
 // Camera RAW files through LibRaw: linear light, white at the sensor's saturation.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <libraw/libraw.h>

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "scene/colmap.h"
 
 // Room for three numbers, each with its '&'.

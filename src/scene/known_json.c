@@ -7,7 +7,6 @@
 
 #include "core/file.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "scene/json_views.h"
 #include "scene/known_internal.h"
 #include "scene/manifest.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "core/memory.h"
 #include "scene/colmap_internal.h"
 #include "scene/known_internal.h"
 #include "scene/text_lines.h"

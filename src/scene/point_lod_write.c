@@ -4,7 +4,6 @@
 #include <sys/statvfs.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "scene/point_lod_internal.h"
 #include "scene/point_parts.h"
 #include "scene/point_stream.h"

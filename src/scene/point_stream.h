@@ -2,8 +2,6 @@
 #ifndef ORL_SCENE_POINT_STREAM_H
 #define ORL_SCENE_POINT_STREAM_H
 
-#include <stdio.h>
-
 #include "core/file.h"
 #include "oriel/points.h"
 

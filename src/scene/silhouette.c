@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "bridge/bridge.h"
-#include "core/memory.h"
 
 // Pieces and holes smaller than this fraction of the picture are specks. Before a dark background
 // larger ones count too: glints of the background, and shadows, which would harm a hull.
