@@ -36,6 +36,8 @@ static enum orl_result find_look(const struct orl_job *job, const struct orl_sou
     size_t size = 0;
     const char *path = LOOK_PATH(job, source);
     enum orl_result result = ORL_OK;
+    if (orl_progress_cancelled(job->progress))
+        return ORL_ERR_CANCELLED;
     if (orl_path_is_file(path) &&
         orl_file_read(NULL, path, sizeof *look, &data, &size) == ORL_OK && size == sizeof *look) {
         memcpy(look, data, sizeof *look);
@@ -87,9 +89,7 @@ enum orl_result orl_doubts_find(const struct orl_job *job, struct orl_doubt *dou
     struct orl_look *looks = orl_array(job->log, job->source_count, sizeof *looks);
     enum orl_result result = looks ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
-        result = orl_progress_cancelled(job->progress)
-                     ? ORL_ERR_CANCELLED
-                     : find_look(job, &job->sources[i], &looks[i]);
+        result = find_look(job, &job->sources[i], &looks[i]);
     ORL_THEN(result, find_blurred(job, looks, doubts));
     if (result == ORL_OK)
         find_same(job, looks, doubts);
@@ -104,9 +104,7 @@ enum orl_result orl_count_views(const struct orl_job *job, size_t enough, size_t
     *views = 0;
     for (size_t i = 0; result == ORL_OK && *views < enough && i < job->source_count; i++) {
         struct orl_look *look = &looks[*views];
-        result = orl_progress_cancelled(job->progress)
-                     ? ORL_ERR_CANCELLED
-                     : find_look(job, &job->sources[i], look);
+        result = find_look(job, &job->sources[i], look);
         bool known = false;
         for (size_t k = 0; result == ORL_OK && k < *views && !known; k++)
             known = orl_look_same_view(&looks[k], look);
