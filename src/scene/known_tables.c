@@ -158,7 +158,7 @@ static double number(const struct heads *heads, char *field)
 // pitch and roll: Rz(-heading) Rx(pitch) Ry(roll), OpenGL's axes.
 static void set_pose(const double value[COLUMNS], double rows[16])
 {
-    const double degree = 3.14159265358979323846 / 180;
+    const double degree = M_PI / 180;
     double ch = cos(-value[HEADING] * degree), sh = sin(-value[HEADING] * degree);
     double cp = cos(value[PITCH] * degree), sp = sin(value[PITCH] * degree);
     double cr = cos(value[ROLL] * degree), sr = sin(value[ROLL] * degree);

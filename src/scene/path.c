@@ -16,7 +16,6 @@
 enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
 
 static const double SECONDS_MIN = 0.01, SECONDS_MAX = 3600; // from a keyframe to the next
-static const double pi = 3.14159265358979323846;
 
 struct orl_camera orl_camera_reframed(const struct orl_camera *camera, int width, int height)
 {
@@ -189,7 +188,7 @@ enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scen
                         "could circle");
     enum orl_result result = allocate(log, frames, path);
     for (size_t i = 0; result == ORL_OK && i < frames; i++) {
-        double angle = 2 * pi * (double)i / (double)frames, eye[3];
+        double angle = 2 * M_PI * (double)i / (double)frames, eye[3];
         for (int k = 0; k < 3; k++)
             eye[k] = circle.middle[k] + circle.height * circle.up[k] +
                      circle.radius * (cos(angle) * circle.ahead[k] + sin(angle) * circle.aside[k]);
@@ -245,7 +244,7 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
         double degrees = json_number_value(fov);
         if (!(degrees > 0.1 && degrees < 170))
             return false;
-        set_fov_y(&view->camera, degrees * pi / 180);
+        set_fov_y(&view->camera, degrees * M_PI / 180);
     }
     *seconds = time ? json_number_value(time) : 1;
     return *seconds >= SECONDS_MIN && *seconds <= SECONDS_MAX;
@@ -295,7 +294,7 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
         return false;
     view->camera = (struct orl_camera){.width = width, .height = height,
                                        .cx = 0.5 * width, .cy = 0.5 * height};
-    set_fov_y(&view->camera, fov * pi / 180);
+    set_fov_y(&view->camera, fov * M_PI / 180);
     (void)orl_pose_from_opengl(m, &view->cam_from_world); // check_view reports problems
     return true;
 }
