@@ -57,17 +57,16 @@ enum orl_result orl_stage_occluders(struct orl_job *job, json_t *record)
     struct orl_scene *scene = NULL;
     struct orl_drawing drawing = {0};
     json_t *occluded = json_object();
-    enum orl_result result = occluded ? orl_scene_json_open(job, &scene) : ORL_ERR_MEMORY;
+    enum orl_result result = json_object_set_new(record, "occluded", occluded) == 0
+                                 ? orl_scene_json_open(job, &scene)
+                                 : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
     if (result == ORL_OK)
         orl_drawing_begin(job, scene, "occluders: none are looked for", &drawing);
     if (result == ORL_OK && drawing.gpu)
         result = find(job, drawing.gpu, scene, occluded);
     else if (result == ORL_OK)
         result = orl_job_remove(job, "occluders");
-    if (result == ORL_OK && json_object_set(record, "occluded", occluded) != 0)
-        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
     orl_drawing_end(&drawing);
     orl_scene_destroy(&scene);
-    json_decref(occluded);
     return result;
 }

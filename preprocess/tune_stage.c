@@ -54,18 +54,18 @@ enum orl_result orl_stage_tune(struct orl_job *job, json_t *record)
     struct orl_scene *scene = NULL;
     struct orl_drawing drawing = {0};
     json_t *tuned = json_object();
-    enum orl_result result = tuned ? orl_scene_json_open(job, &scene) : ORL_ERR_MEMORY;
+    enum orl_result result = json_object_set_new(record, "tuned", tuned) == 0
+                                 ? orl_scene_json_open(job, &scene)
+                                 : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
     if (result == ORL_OK && job->params->adapt == ORL_ADAPT_AUTO &&
         scene->photo_count - orl_heldout_count(scene) >= VIEWS_MIN)
         orl_drawing_begin(job, scene, "tune: settings stay those of the method", &drawing);
     if (drawing.gpu)
         result = tune(job, drawing.gpu, scene, tuned);
     if (result == ORL_OK &&
-        (json_object_set(record, "tuned", tuned) != 0 ||
-         json_object_set_new(record, "backdrop", orl_manifest_backdrop(scene->backdrop_rests)) != 0))
+        json_object_set_new(record, "backdrop", orl_manifest_backdrop(scene->backdrop_rests)) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
     orl_drawing_end(&drawing);
     orl_scene_destroy(&scene);
-    json_decref(tuned);
     return result;
 }
