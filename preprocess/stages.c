@@ -31,23 +31,22 @@
 
 // --- what a stage's result depends on, besides the stages before it ---
 
-static json_t *photo_hashes(const struct orl_job *job)
+// Of the photographs, or of the masks that they have.
+static json_t *hashes(const struct orl_job *job, bool masks)
 {
-    json_t *photos = json_object();
-    for (size_t i = 0; i < job->source_count; i++)
-        json_object_set_new(photos, job->sources[i].name,
-                            json_sprintf("%016" PRIx64, job->sources[i].hash));
-    return photos;
+    json_t *hashes = json_object();
+    for (size_t i = 0; i < job->source_count; i++) {
+        const struct orl_source *source = &job->sources[i];
+        if (source->mask || !masks)
+            json_object_set_new(hashes, source->name,
+                                json_sprintf("%016" PRIx64, masks ? source->mask_hash : source->hash));
+    }
+    return hashes;
 }
 
-static json_t *mask_hashes(const struct orl_job *job)
+static json_t *photo_hashes(const struct orl_job *job)
 {
-    json_t *masks = json_object();
-    for (size_t i = 0; i < job->source_count; i++)
-        if (job->sources[i].mask)
-            json_object_set_new(masks, job->sources[i].name,
-                                json_sprintf("%016" PRIx64, job->sources[i].mask_hash));
-    return masks;
+    return hashes(job, false);
 }
 
 static json_t *test_names(const struct orl_job *job)
@@ -61,7 +60,7 @@ static json_t *test_names(const struct orl_job *job)
 
 static json_t *calibrate_settings(const struct orl_job *job)
 {
-    return json_pack("{s:o, s:o*}", "masks", mask_hashes(job), "normalised",
+    return json_pack("{s:o, s:o*}", "masks", hashes(job, true), "normalised",
                      orl_normalise_wanted(job) ? json_string(job->exposures_hash) : NULL);
 }
 
