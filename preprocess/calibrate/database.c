@@ -224,16 +224,13 @@ enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, 
         matches[i][0] = matches[i][1];
         matches[i][1] = first;
     }
-    enum orl_result result = ORL_OK;
-    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK) {
-        sqlite3_bind_int64(statement, 1, pair_id(a, b));
-        sqlite3_bind_int64(statement, 2, (sqlite3_int64)count);
-        sqlite3_bind_blob(statement, 3, matches, (int)(count * sizeof *matches), SQLITE_STATIC);
-        if (sqlite3_step(statement) != SQLITE_DONE)
-            result = fail(db);
-    } else {
-        result = fail(db);
-    }
+    bool done = sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK &&
+                sqlite3_bind_int64(statement, 1, pair_id(a, b)) == SQLITE_OK &&
+                sqlite3_bind_int64(statement, 2, (sqlite3_int64)count) == SQLITE_OK &&
+                sqlite3_bind_blob(statement, 3, matches, (int)(count * sizeof *matches),
+                                  SQLITE_STATIC) == SQLITE_OK &&
+                sqlite3_step(statement) == SQLITE_DONE;
+    enum orl_result result = done ? ORL_OK : fail(db);
     sqlite3_finalize(statement);
     return result;
 }
