@@ -128,12 +128,6 @@ static enum orl_result find_parts(const struct orl_job *job, enum orl_part_step 
     return ORL_OK;
 }
 
-static enum orl_result rename_in(const struct orl_job *job, const char *from, const char *to)
-{
-    ORL_TRY(orl_flush(job->log, ORL_PATH(job->dir, "%s", from)));
-    return orl_job_replace(job, from, to);
-}
-
 // --- the jobs ---
 
 struct part {
@@ -141,7 +135,7 @@ struct part {
     const struct orl_camera_groups *groups;
     enum orl_part_step step;
     int index, count;
-    const char *stem, *temp, *temp_db, *final_db;
+    const char *temp, *temp_db, *final_db;
 };
 
 static enum orl_result run_features(const struct part *part)
@@ -267,23 +261,23 @@ static enum orl_result run_locked(const struct part *part)
     }
     ORL_TRY(orl_job_find_colmap(job));
     ORL_TRY(steps[part->step](part));
-    return rename_in(job, part->temp_db, part->final_db);
+    ORL_TRY(orl_flush(job->log, ORL_PATH(job->dir, "%s", part->temp_db)));
+    return orl_job_replace(job, part->temp_db, part->final_db);
 }
 
 static enum orl_result run_part(struct orl_job *job, const struct orl_camera_groups *groups,
                                 enum orl_part_step step, int index, int count)
 {
     struct part part = {.job = job, .groups = groups, .step = step, .index = index, .count = count,
-                        .stem = PART_NAME(step, index, count, ""),
                         .temp = PART_NAME(step, index, count, ".tmp"),
                         .temp_db = PART_NAME(step, index, count, ".tmp.db"),
                         .final_db = PART_NAME(step, index, count, ".db")};
+    const char *stem = PART_NAME(step, index, count, "");
     bool taken = false;
     int fd = -1;
-    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, "%s.lock", part.stem), false, &fd, &taken);
+    enum orl_result result = orl_lock(job->log, ORL_PATH(job->dir, "%s.lock", stem), false, &fd, &taken);
     if (result == ORL_OK && taken)
-        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is at work on it",
-                          part.stem);
+        result = orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: another oriel is at work on it", stem);
     ORL_THEN(result, run_locked(&part));
     orl_unlock(&fd);
     return result;
