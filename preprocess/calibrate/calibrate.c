@@ -202,12 +202,11 @@ static enum orl_result extract_all(const struct calibration *c, bool costly)
 // More features that bear wider baselines, for sets that hardly overlap.
 static enum orl_result try_costly(struct calibration *c)
 {
-    struct orl_match_summary pairs;
     say(c, "trying affine-shape features and guided matching");
     ORL_TRY(set_mark(c, false));
     ORL_TRY(restart_database(c));
     ORL_TRY(extract_all(c, true));
-    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, &pairs));
+    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, NULL));
     ORL_TRY(map(c, false, NULL));
     return enough(c) ? ORL_OK : map(c, true, NULL);
 }
@@ -258,11 +257,10 @@ static enum orl_result match_left_out(struct calibration *c)
 
 static enum orl_result match_all(struct calibration *c)
 {
-    struct orl_match_summary pairs;
     if (c->way == ORL_MATCHING_EXHAUSTIVE || enough(c))
         return ORL_OK;
     say(c, "matching all pairs");
-    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, &pairs));
+    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, NULL));
     return map(c, false, NULL);
 }
 

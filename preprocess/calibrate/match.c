@@ -200,7 +200,6 @@ static enum orl_result match_retrieved(struct orl_job *job, struct orl_match_sum
 enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
                           struct orl_match_summary *summary)
 {
-    *summary = (struct orl_match_summary){0};
     ORL_TRY(way == ORL_MATCHING_RETRIEVAL
                 ? match_retrieved(job, summary)
                 : match_by_colmap(job, way == ORL_MATCHING_SEQUENTIAL, guided));
@@ -210,14 +209,13 @@ enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guide
 
 enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)
 {
-    size_t n = job->source_count, count = 0;
+    size_t n = job->source_count;
     struct orl_pair_list list = {.items = orl_array(job->log, n * (n - 1) / 2, sizeof *list.items)};
     ORL_TRY_MEMORY(list.items);
     for (size_t a = 0; a < n; a++)
         for (size_t b = a + 1; b < n; b++)
             if (marked[a] || marked[b])
-                list.items[count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
-    list.count = count;
+                list.items[list.count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
     enum orl_result result = orl_match_list(job, ORL_CALIBRATE_DATABASE, &list);
     if (result == ORL_OK)
         orl_progress_report(job->progress, "matching", 1, 1, NULL);

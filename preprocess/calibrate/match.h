@@ -16,11 +16,12 @@ enum orl_result orl_match_open_database(const struct orl_job *job, const char *n
                                         struct orl_database **db) ORL_CHECK_RESULT;
 // The way that this choice and this many photographs ask for; never auto.
 enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs);
-// What retrieval did. Zeroes for the other ways, whose pairs COLMAP chooses.
+// What retrieval did.
 struct orl_match_summary {
     size_t tried, chosen; // pairs
     double choosing_s;
 };
+// summary: stays as it is by the other ways, whose pairs COLMAP chooses, and may be NULL for them.
 enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
                           struct orl_match_summary *summary) ORL_CHECK_RESULT;
 // Chooses pairs by retrieval from the features in `database`, a name below the scene. *list is
