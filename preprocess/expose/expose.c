@@ -75,6 +75,7 @@ struct exposing {
     struct photo *photos;
     struct orl_exposure *exposures;
     size_t count, train;
+    int camera_count; // of those that photographs may share a response of
     struct orl_samples samples; // of training photographs
     struct orl_response *responses;
     size_t response_count;
@@ -92,7 +93,6 @@ static bool same_camera(const struct orl_source *a, const struct orl_source *b)
 // The response of photographs with more than 8 bits is known: their 8-bit copies are sRGB.
 static void set_cameras(struct exposing *e)
 {
-    int cameras = 0;
     for (size_t i = 0; i < e->count; i++) {
         struct photo *photo = &e->photos[i];
         photo->response = photo->camera = -1;
@@ -102,7 +102,7 @@ static void set_cameras(struct exposing *e)
             if (e->photos[k].camera >= 0 && same_camera(photo->source, e->photos[k].source))
                 photo->camera = e->photos[k].camera;
         if (photo->camera < 0)
-            photo->camera = cameras++;
+            photo->camera = e->camera_count++;
     }
 }
 
@@ -273,15 +273,12 @@ end:
 
 static enum orl_result fit_responses(struct exposing *e)
 {
-    int cameras = 0;
     e->response_count = 0;
     json_array_clear(e->response_list);
-    for (size_t i = 0; i < e->count; i++)
-        cameras = e->photos[i].camera >= cameras ? e->photos[i].camera + 1 : cameras;
     if (!e->responses)
-        e->responses = orl_array(e->job->log, (size_t)cameras, sizeof *e->responses);
+        e->responses = orl_array(e->job->log, (size_t)e->camera_count, sizeof *e->responses);
     ORL_TRY_MEMORY(e->responses);
-    for (int camera = 0; camera < cameras; camera++)
+    for (int camera = 0; camera < e->camera_count; camera++)
         ORL_TRY(fit_camera(e, camera));
     return ORL_OK;
 }
@@ -289,10 +286,7 @@ static enum orl_result fit_responses(struct exposing *e)
 // Photographs of one camera of the model share their lens.
 static int lens_of(const struct exposing *e, size_t photo)
 {
-    for (size_t i = 0; i < e->model->camera_count; i++)
-        if (e->model->cameras[i].id == e->photos[photo].image->camera_id)
-            return (int)i;
-    return 0;
+    return (int)(orl_colmap_camera_by_id(e->model, e->photos[photo].image->camera_id) - e->model->cameras);
 }
 
 static void say_alignment(const struct exposing *e, const struct orl_align_photo *photos,
