@@ -52,13 +52,6 @@ struct planner {
 
 // --- what the scene says ---
 
-// The photographs of a calibration that has begun; *begun stays NULL where none has.
-static enum orl_result read_begun(const struct planner *p, json_t **begun)
-{
-    const char *path = ORL_PATH(p->dir, ORL_PARTS_STATE);
-    return orl_path_is_file(path) ? orl_json_read(p->log, path, begun) : ORL_OK;
-}
-
 // Takes out options and values that earlier programs had.
 static json_t *without_gone_options(const json_t *arguments)
 {
@@ -97,12 +90,12 @@ static enum orl_result parse_arguments(struct planner *p, const char *path)
 
 static enum orl_result read_arguments(struct planner *p)
 {
-    json_t *stages = NULL, *begun = NULL;
-    const char *path = ORL_PATH(p->dir, ".oriel/stages.json");
+    json_t *stages = NULL, *begun = NULL; // begun: a calibration's photographs
+    const char *path = ORL_PATH(p->dir, ".oriel/stages.json"), *parts = ORL_PATH(p->dir, ORL_PARTS_STATE);
     enum orl_result result = orl_path_is_file(path) ? orl_json_read(p->log, path, &stages) : ORL_OK;
     p->undistorted = json_object_get(json_object_get(stages, "done"), "undistort") != NULL;
-    if (result == ORL_OK && !p->undistorted)
-        result = read_begun(p, &begun);
+    if (result == ORL_OK && !p->undistorted && orl_path_is_file(parts))
+        result = orl_json_read(p->log, parts, &begun);
     p->given = json_array_size(json_object_get(begun, "photographs"));
     json_decref(begun);
     p->arguments = without_gone_options(json_object_get(stages, "arguments"));
@@ -175,14 +168,19 @@ static void add_option(json_t *list, const char *option, int value)
     json_array_append_new(list, json_sprintf("%d", value));
 }
 
+static void add_part(json_t *list, int part, int parts)
+{
+    add_text(list, "--part");
+    json_array_append_new(list, json_sprintf("%d/%d", part + 1, parts));
+}
+
 static json_t *densify_command(const struct planner *p, int pass, int part)
 {
     json_t *list = json_pack("[s, s, s, s, s+]", "oriel", "densify", p->dir, "--photos", p->dir,
                              "/stereo/fusion.cfg");
     orl_arguments_record(list, orl_densify_options(), &p->densify, NULL);
     add_option(list, "--pass", pass);
-    add_text(list, "--part");
-    json_array_append_new(list, json_sprintf("%d/%d", part + 1, p->parts));
+    add_part(list, part, p->parts);
     return list;
 }
 
@@ -244,8 +242,7 @@ static json_t *fuse_command(const struct planner *p, int cluster)
         add_text(list, "--masks");
     if (p->params.max_ram_bytes)
         add_option(list, "--max-ram", (int)(p->params.max_ram_bytes >> 20));
-    add_text(list, "--part");
-    json_array_append_new(list, json_sprintf("%d/%zu", cluster + 1, p->clusters.count));
+    add_part(list, cluster, (int)p->clusters.count);
     return list;
 }
 
@@ -330,12 +327,11 @@ static void plan_finish(struct planner *p)
 
 static enum orl_result plan_jobs(struct planner *p)
 {
-    for (int pass = 0; p->parts && pass <= p->densify.geometric_passes; pass++)
+    for (int pass = 0; pass <= p->densify.geometric_passes; pass++)
         for (int part = 0; part < p->parts; part++)
             plan_part(p, pass, part);
     enum orl_result result = ORL_OK;
-    for (int c = 0; p->parts && result == ORL_OK && p->clusters.count > 1 &&
-                    c < (int)p->clusters.count; c++)
+    for (int c = 0; result == ORL_OK && p->clusters.count > 1 && c < (int)p->clusters.count; c++)
         result = plan_cluster(p, c);
     plan_finish(p);
     return result;
@@ -349,10 +345,8 @@ static void plan_step(struct planner *p, enum orl_part_step step, int part, int 
 {
     const char *name = orl_part_step_names[step];
     json_t *command = json_pack("[s, s, s, s, s, s]", "oriel", "job", "calibrate", p->dir, "--step", name);
-    if (step != ORL_PART_PAIRS) {
-        add_text(command, "--part");
-        json_array_append_new(command, json_sprintf("%d/%d", part + 1, parts));
-    }
+    if (step != ORL_PART_PAIRS)
+        add_part(command, part, parts);
     json_t *output = json_sprintf("%s/" ORL_CALIBRATE_WORK "/%s-%06d-of-%06d.db", p->dir, name,
                                   part + 1, parts);
     json_array_append_new(p->jobs, json_pack(
