@@ -101,6 +101,10 @@ struct orl_tex {
 // Creates a texture filled with zeros. Texture coordinates clamp to the edge.
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out) ORL_CHECK_RESULT;
+// Keeps *tex, which may be NULL, if it has this size, as many levels and this format; else a new texture
+// takes its place.
+enum orl_result orl_tex_fit(struct orl_gpu *gpu, const struct orl_tex_params *params,
+                            struct orl_tex **tex) ORL_CHECK_RESULT;
 void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **tex);
 // True if the device can sample textures of this compressed format.
 bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format);

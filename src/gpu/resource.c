@@ -184,6 +184,18 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     return ORL_OK;
 }
 
+enum orl_result orl_tex_fit(struct orl_gpu *gpu, const struct orl_tex_params *params,
+                            struct orl_tex **tex)
+{
+    const struct orl_tex_params *old = *tex ? &(*tex)->params : NULL;
+    int levels = params->levels > 1 ? params->levels : 1;
+    if (old && old->width == params->width && old->height == params->height && old->levels == levels &&
+        old->format == params->format)
+        return ORL_OK;
+    orl_tex_destroy(gpu, tex);
+    return orl_tex_create(gpu, params, tex);
+}
+
 void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
 {
     struct orl_tex *tex = *handle;

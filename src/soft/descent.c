@@ -72,12 +72,11 @@ static enum orl_result resize(struct orl_gpu *gpu, struct orl_soft_descent *d, i
     const struct orl_log *log = orl_gpu_log(gpu);
     orl_image_finish(&d->picture);
     orl_image_finish(&d->gradient);
-    orl_tex_destroy(gpu, &d->gradient_target);
     ORL_TRY(orl_image_init(log, &d->picture, width, height, 4, ORL_PIXEL_F32));
     ORL_TRY(orl_image_init(log, &d->gradient, width, height, 4, ORL_PIXEL_F32));
-    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height, .format = GL_RGBA32F,
-                                                        .owner = ORL_OWNER_FRAME, .tag = "gradient of the picture"},
-                          &d->gradient_target);
+    return orl_tex_fit(gpu, &(struct orl_tex_params){.width = width, .height = height, .format = GL_RGBA32F,
+                                                     .owner = ORL_OWNER_FRAME, .tag = "gradient of the picture"},
+                       &d->gradient_target);
 }
 
 // Sums the gradients of each splat and steps against them.

@@ -73,14 +73,11 @@ static struct soft_block block_of(const struct orl_soft_raster *raster, const st
 
 static enum orl_result fit_target(struct orl_gpu *gpu, struct orl_soft_raster *raster, int width, int height)
 {
-    if (raster->blended && raster->blended->params.width == width && raster->blended->params.height == height)
-        return ORL_OK;
-    orl_tex_destroy(gpu, &raster->blended);
-    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height,
-                                                        .levels = orl_mip_levels(width, height), .format = GL_RGBA32F,
-                                                        .linear = true, .owner = ORL_OWNER_FRAME,
-                                                        .tag = "blended soft splats"},
-                          &raster->blended);
+    return orl_tex_fit(gpu, &(struct orl_tex_params){.width = width, .height = height,
+                                                     .levels = orl_mip_levels(width, height), .format = GL_RGBA32F,
+                                                     .linear = true, .owner = ORL_OWNER_FRAME,
+                                                     .tag = "blended soft splats"},
+                       &raster->blended);
 }
 
 enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,

@@ -18,14 +18,12 @@ enum orl_result orl_frame_target(const struct frame *frame, const char *tag, boo
                                  struct orl_tex **tex)
 {
     const struct orl_camera *camera = &frame->view->camera;
-    const struct orl_tex *old = *tex;
-    if (wanted && old && old->params.width == camera->width && old->params.height == camera->height &&
-        old->params.format == format)
-        return ORL_OK;
+    const struct orl_tex_params params = {.width = camera->width, .height = camera->height, .format = format,
+                                          .tag = tag};
+    if (wanted)
+        return orl_tex_fit(frame->gpu, &params, tex);
     orl_tex_destroy(frame->gpu, tex);
-    struct orl_tex_params params = {.width = camera->width, .height = camera->height, .format = format,
-                                    .tag = tag};
-    return wanted ? orl_tex_create(frame->gpu, &params, tex) : ORL_OK;
+    return ORL_OK;
 }
 
 void orl_frame_finish(struct orl_frame *frame)

@@ -51,28 +51,20 @@ void orl_guess_finish(struct orl_gpu *gpu, struct guess *guess)
     orl_tex_destroy(gpu, &guess->picked);
 }
 
-static enum orl_result resize_cells(struct orl_gpu *gpu, const char *tag, int width, int height,
-                                    struct orl_tex **tex)
-{
-    const struct orl_tex *old = *tex;
-    if (old && old->params.width == width && old->params.height == height)
-        return ORL_OK;
-    orl_tex_destroy(gpu, tex);
-    return orl_tex_create(gpu, &(struct orl_tex_params){.width = width, .height = height,
-                                                        .format = GL_R32F, .tag = tag}, tex);
-}
-
 enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
 {
     struct orl_gpu *gpu = frame->gpu;
-    int width = cells(frame, frame->view->camera.width), height = cells(frame, frame->view->camera.height);
+    struct orl_tex_params params = {.width = cells(frame, frame->view->camera.width),
+                                    .height = cells(frame, frame->view->camera.height),
+                                    .format = GL_R32F, .tag = "estimated depth"};
     size_t bytes = cost_bytes(frame);
     if (!orl_guess_applies(frame))
         return ORL_OK;
     ORL_TRY(orl_make_room(gpu, "costs of depths", bytes, &guess->costs));
     ORL_TRY(orl_make_room(gpu, "costs of paths", bytes, &guess->sums));
-    ORL_TRY(resize_cells(gpu, "estimated depth", width, height, &guess->estimated));
-    return resize_cells(gpu, "picked depth", width, height, &guess->picked);
+    ORL_TRY(orl_tex_fit(gpu, &params, &guess->estimated));
+    params.tag = "picked depth";
+    return orl_tex_fit(gpu, &params, &guess->picked);
 }
 
 static struct orl_prog *program(const struct frame *frame, const char *file, const char *along)

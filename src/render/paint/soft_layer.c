@@ -79,10 +79,7 @@ static enum orl_result resize(const struct frame *frame)
                                           .levels = orl_mip_levels(c->width, c->height), .format = GL_R16F,
                                           .linear = true, .tag = "difference of soft splats"};
     ORL_TRY(orl_frame_target(frame, "soft splats of photographs", true, GL_R16F, &layer->gathered));
-    if (layer->differs && layer->differs->params.width == c->width && layer->differs->params.height == c->height)
-        return ORL_OK;
-    orl_tex_destroy(frame->gpu, &layer->differs);
-    return orl_tex_create(frame->gpu, &params, &layer->differs);
+    return orl_tex_fit(frame->gpu, &params, &layer->differs);
 }
 
 enum orl_result orl_soft_layer_ready(struct frame *frame)

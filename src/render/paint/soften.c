@@ -20,7 +20,6 @@ float orl_soften_max(int width, int height)
 enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
                                   int height)
 {
-    const struct orl_tex *old = soften->guesses;
     struct orl_tex_params params = {.width = (width + 1) / 2, .height = (height + 1) / 2,
                                     .levels = 1, .linear = true, .format = GL_RGBA32F,
                                     .tag = "guesses"};
@@ -29,11 +28,7 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, in
     float most = orl_soften_max(width, height);
     while ((float)(1 << params.levels) < most && longer >> (params.levels + 1) > 0)
         params.levels++;
-    if (old && old->params.width == params.width && old->params.height == params.height &&
-        old->params.levels == params.levels)
-        return ORL_OK;
-    orl_tex_destroy(gpu, &soften->guesses);
-    return orl_tex_create(gpu, &params, &soften->guesses);
+    return orl_tex_fit(gpu, &params, &soften->guesses);
 }
 
 void orl_soften_prepare(const struct frame *frame)
