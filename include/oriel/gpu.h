@@ -213,6 +213,8 @@ struct orl_pass_time {
 void orl_gpu_time_passes(struct orl_gpu *gpu, bool enabled);
 void orl_pass_begin(struct orl_gpu *gpu, const char *name);
 void orl_pass_end(struct orl_gpu *gpu);
+// A dispatch that is a pass.
+void orl_gpu_pass(struct orl_gpu *gpu, const char *name, const struct orl_dispatch *dispatch);
 // Waits for pending timers, fills up to `capacity` rows in order of first use, resets the sums, and
 // returns the number of passes.
 size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size_t capacity);

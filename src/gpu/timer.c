@@ -97,6 +97,13 @@ void orl_pass_end(struct orl_gpu *gpu)
     gpu->pass = -1;
 }
 
+void orl_gpu_pass(struct orl_gpu *gpu, const char *name, const struct orl_dispatch *dispatch)
+{
+    orl_pass_begin(gpu, name);
+    orl_gpu_dispatch(gpu, dispatch);
+    orl_pass_end(gpu);
+}
+
 void orl_gpu_trace_passes(struct orl_gpu *gpu, struct orl_pass_trace *trace)
 {
     resolve_queries(gpu);

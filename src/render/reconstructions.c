@@ -40,7 +40,5 @@ void orl_reconstruction_add(const struct frame *frame, struct orl_tex *mean, int
         .images = {{frame->picture, 0, GL_READ_WRITE}, {mean, 0, GL_READ_WRITE}},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
-    orl_pass_begin(frame->gpu, "mean");
-    orl_gpu_dispatch(frame->gpu, &d);
-    orl_pass_end(frame->gpu);
+    orl_gpu_pass(frame->gpu, "mean", &d);
 }

@@ -234,9 +234,7 @@ static enum orl_result choose_radiance(const struct frame *frame, const struct g
     d.groups[0] = orl_groups(across, 8);
     d.groups[1] = orl_groups(down, 8);
     d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
-    orl_pass_begin(frame->gpu, "choose");
-    orl_gpu_dispatch(frame->gpu, &d);
-    orl_pass_end(frame->gpu);
+    orl_gpu_pass(frame->gpu, "choose", &d);
     return ORL_OK;
 }
 
@@ -285,9 +283,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
         ORL_TRY(choose_radiance(frame, &slots, d));
         d.bufs[1].buf = frame->paint->gather.tile_lists;
     }
-    orl_pass_begin(frame->gpu, "gather");
-    orl_gpu_dispatch(frame->gpu, &d);
-    orl_pass_end(frame->gpu);
+    orl_gpu_pass(frame->gpu, "gather", &d);
     return ORL_OK;
 }
 

@@ -46,9 +46,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
     orl_tex_clear(frame->paint->soften.guesses, 0);
-    orl_pass_begin(frame->gpu, "gather");
-    orl_gpu_dispatch(frame->gpu, &d);
-    orl_pass_end(frame->gpu);
+    orl_gpu_pass(frame->gpu, "gather", &d);
 }
 
 static enum orl_result paint_chosen(const struct frame *frame)
@@ -74,9 +72,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
                                         [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
                              .groups = {orl_groups(across, 8), orl_groups(down, 8)},
                              .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
-    orl_pass_begin(frame->gpu, "choose");
-    orl_gpu_dispatch(frame->gpu, &d);
-    orl_pass_end(frame->gpu);
+    orl_gpu_pass(frame->gpu, "choose", &d);
     if (orl_guess_applies(frame))
         orl_guess_depth(frame, &d, &block);
     gather_tiles(frame, d);

@@ -139,7 +139,5 @@ void orl_room_show(const struct frame *frame, const struct room *room)
                    {frame->surface.depth, 0, GL_READ_ONLY}},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
-    orl_pass_begin(frame->gpu, "room");
-    orl_gpu_dispatch(frame->gpu, &d);
-    orl_pass_end(frame->gpu);
+    orl_gpu_pass(frame->gpu, "room", &d);
 }
