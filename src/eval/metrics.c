@@ -11,12 +11,10 @@
 
 static const double psnr_max_db = 100;
 
-static double psnr_db(double squared_error, double count)
+double orl_psnr_db(double squared_error, double count, double peak)
 {
     double mse = squared_error / count;
-    if (!(mse > 0))
-        return psnr_max_db;
-    return fmin(psnr_max_db, 10 * log10(255.0 * 255.0 / mse));
+    return mse > 0 ? fmin(psnr_max_db, 10 * log10(peak * peak / mse)) : psnr_max_db;
 }
 
 static size_t pixel_count(const struct orl_image *image)
@@ -45,8 +43,8 @@ static void measure_psnr(const struct orl_image *a, const struct orl_image *b,
             covered++;
         }
     }
-    metrics->psnr_db = psnr_db(sum, 3.0 * (double)count);
-    metrics->psnr_covered_db = covered ? psnr_db(covered_sum, 3.0 * (double)covered) : 0;
+    metrics->psnr_db = orl_psnr_db(sum, 3.0 * (double)count, 255);
+    metrics->psnr_covered_db = covered ? orl_psnr_db(covered_sum, 3.0 * (double)covered, 255) : 0;
     metrics->coverage = (double)covered / (double)count;
 }
 
@@ -108,7 +106,7 @@ static double psnr_after_fit(const struct orl_image *a, const struct orl_image *
             sum += error * error;
         }
     }
-    return psnr_db(sum, 3.0 * (double)count);
+    return orl_psnr_db(sum, 3.0 * (double)count, 255);
 }
 
 // --- SSIM ---
@@ -303,7 +301,7 @@ double orl_metrics_psnr_db(const struct orl_image *a, const struct orl_image *b)
     double sum = 0;
     for (size_t i = 0; i < pixel_count(a); i++)
         sum += squared_error(&a->u8[3 * i], &b->u8[3 * i]);
-    return psnr_db(sum, 3.0 * (double)pixel_count(a));
+    return orl_psnr_db(sum, 3.0 * (double)pixel_count(a), 255);
 }
 
 enum orl_result orl_metrics_compare(const struct orl_log *log, const struct orl_image *a,

@@ -31,6 +31,8 @@ enum orl_result orl_metrics_of_part(const struct orl_log *log, const struct orl_
                                     const struct orl_image *b, const struct orl_image *coverage,
                                     const struct orl_image *part,
                                     struct orl_part_metrics *metrics) ORL_CHECK_RESULT;
+// In dB of `peak`, at most 100, from a sum of squared errors.
+double orl_psnr_db(double squared_error, double count, double peak);
 // psnr_db alone, and ssim alone.
 double orl_metrics_psnr_db(const struct orl_image *a, const struct orl_image *b);
 enum orl_result orl_metrics_ssim(const struct orl_log *log, const struct orl_image *a,

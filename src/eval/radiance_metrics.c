@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double psnr_max_db = 100;
+#include "eval/metrics.h"
 
 double orl_pu21_encode(double cd_m2)
 {
@@ -18,12 +18,6 @@ static double mu_law(double light)
 {
     const double mu = 5000;
     return log1p(mu * fmin(fmax(light, 0), 1)) / log1p(mu);
-}
-
-static double psnr_db(double squared_error, double count, double peak)
-{
-    double mse = squared_error / count;
-    return mse > 0 ? fmin(psnr_max_db, 10 * log10(peak * peak / mse)) : psnr_max_db;
 }
 
 // NaN counts as no light.
@@ -54,8 +48,8 @@ static void measure_psnr(const struct orl_image *a, const struct orl_image *b, s
         mu += mu_error * mu_error;
     }
     // The reference implementation's peak: PU21 maps 0.1 to 100 cd/m2 to about 0 to 256.
-    metrics->pu21_psnr_db = psnr_db(pu, (double)count, 256);
-    metrics->mu_psnr_db = psnr_db(mu, (double)count, 1);
+    metrics->pu21_psnr_db = orl_psnr_db(pu, (double)count, 256);
+    metrics->mu_psnr_db = orl_psnr_db(mu, (double)count, 1);
 }
 
 static void measure_log(const struct orl_image *a, const struct orl_image *b,
