@@ -3,12 +3,6 @@
 #include "render/frame/method.h"
 #include "render/paint/paint.h"
 
-static bool always(const struct frame *frame)
-{
-    (void)frame;
-    return true;
-}
-
 static bool fills(const struct frame *frame)
 {
     return frame->params->fill != ORL_FILL_NONE;
@@ -78,7 +72,7 @@ static void median(const struct frame *frame)
 const struct post_pass orl_post_passes[] = {
     {"fill", fills, orl_fill_color},
     {"soften", softens, orl_soften_prepare},
-    {"compose", always, compose},
+    {"compose", NULL, compose},
     {"median", takes_median, median},
     {"antialias", antialiases, orl_edges_antialias},
     {0},

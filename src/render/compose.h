@@ -7,7 +7,7 @@
 // A pass after the painter. The passes run in the order of the list.
 struct post_pass {
     const char *name;
-    bool (*applies)(const struct frame *frame);
+    bool (*applies)(const struct frame *frame); // NULL: always
     void (*run)(const struct frame *frame);
 };
 // Terminated by a NULL name.

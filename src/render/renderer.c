@@ -170,7 +170,7 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
     if (room)
         orl_room_show(frame, &r->room);
     for (const struct post_pass *pass = orl_post_passes; pass->name; pass++) {
-        if (!pass->applies(frame))
+        if (pass->applies && !pass->applies(frame))
             continue;
         orl_pass_begin(frame->gpu, pass->name);
         pass->run(frame);
