@@ -8,12 +8,12 @@
 
 #include "core/memory.h"
 #include "render/photos/photos.h"
+#include "render/photos/select.h"
 #include "render/proxy/proxy.h"
 
 bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo)
 {
-    return frame->scene->photos[photo].masked && frame->photos->states[photo].usable &&
-           !(frame->skip && frame->skip[photo]);
+    return frame->scene->photos[photo].masked && orl_frame_may_use(frame, photo);
 }
 
 bool orl_voxels_silhouettes(const struct frame *frame)

@@ -10,7 +10,7 @@
 #include "core/order.h"
 #include "core/vec3.h"
 #include "render/frame/frame.h"
-#include "render/photos/photos.h"
+#include "render/photos/select.h"
 #include "scene/depth_buffer.h"
 
 enum {
@@ -283,7 +283,7 @@ static enum orl_result choose(struct frame *frame, size_t most)
     if (result != ORL_OK)
         goto end;
     for (size_t i = 0; i < frame->scene->photo_count; i++)
-        taken[i] = !frame->photos->states[i].usable || (frame->skip && frame->skip[i]);
+        taken[i] = !orl_frame_may_use(frame, i);
     view_direction(frame, direction);
     frame->chosen_count = 0;
     for (size_t n = (size_t)(frame->params->nearest + 0.5f); n > 0; n--)

@@ -12,7 +12,7 @@
 
 enum { PHOTOS_PER_FRAME_MAX = 48 }; // limit of preselect
 
-static bool may_use(const struct frame *frame, size_t photo)
+bool orl_frame_may_use(const struct frame *frame, size_t photo)
 {
     return frame->photos->states[photo].usable && !(frame->skip && frame->skip[photo]);
 }
@@ -22,7 +22,7 @@ static enum orl_result choose_all(struct frame *frame, size_t most)
     (void)most; // photographs that do not fit on the device are asked in batches
     frame->chosen_count = 0;
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
-        if (!may_use(frame, i))
+        if (!orl_frame_may_use(frame, i))
             continue;
         frame->selected[frame->chosen_count][0] = 1;
         frame->chosen[frame->chosen_count++] = i;
@@ -67,7 +67,7 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
                                        sizeof *all);
     ORL_TRY_MEMORY(all);
     for (size_t i = 0; i < frame->scene->photo_count; i++)
-        if (may_use(frame, i))
+        if (orl_frame_may_use(frame, i))
             all[count++] = (struct orl_ranked){deviation(frame, i), i};
     qsort(all, count, sizeof *all, orl_order_ranked);
     double threshold = count > kept ? all[kept].key : INFINITY;
@@ -205,7 +205,7 @@ static enum orl_result choose_best(struct frame *frame, size_t most)
     if (result != ORL_OK)
         goto end;
     for (size_t i = 0; i < photo_count; i++)
-        if (may_use(frame, i))
+        if (orl_frame_may_use(frame, i))
             candidates[usable++] = (struct candidate){.photo = i};
     if (usable > most) {
         rank(frame, candidates, scores, usable);

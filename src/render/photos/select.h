@@ -7,6 +7,8 @@
 
 extern const struct orl_selection orl_select_all, orl_select_nearest, orl_select_preselect;
 
+// True if the frame may be painted from the photograph.
+bool orl_frame_may_use(const struct frame *frame, size_t photo);
 // The penalty of shaders/shared/penalty.h for a photograph and a world point; negative if the point
 // is outside the photograph. eye: the view's camera centre; view_focal: its fx, pixels.
 double orl_photo_penalty(const struct orl_view *photo, const double eye[3], double view_focal,
