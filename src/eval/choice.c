@@ -6,7 +6,8 @@
 
 #include "core/memory.h"
 
-const char orl_choice_paired[] = "on the proxy of oriel";
+// The setting of a paper's method on the proxy and background of the first method, oriel.
+static const char paired_setting[] = "on the proxy of oriel";
 
 // What all choices of a command have in common.
 struct wish {
@@ -106,7 +107,7 @@ static enum orl_result add_paired(const struct orl_log *log, const struct orl_ch
 {
     if (!orl_render_params_take_proxy(&base->params, &choice.params))
         return ORL_OK;
-    snprintf(choice.setting, sizeof choice.setting, "%s", orl_choice_paired);
+    snprintf(choice.setting, sizeof choice.setting, "%s", paired_setting);
     return add(log, &choice, choices);
 }
 

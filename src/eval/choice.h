@@ -10,12 +10,9 @@
 
 struct orl_choice {
     const struct orl_method *method;
-    char setting[64]; // in which choices of one method differ: KEY=VALUE, orl_choice_paired; empty: none
+    char setting[64]; // in which choices of one method differ: KEY=VALUE, or what --method paired adds; empty: none
     struct orl_render_params params;
 };
-
-// The setting of a paper's method on the proxy and background of the first method, oriel.
-extern const char orl_choice_paired[];
 
 // scene: its tuned values are used; NULL: none are. method: a name; NULL: the scene's default.
 // sample: what the renderer samples photographs for, which decides which options may be set.
