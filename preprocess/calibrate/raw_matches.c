@@ -12,7 +12,6 @@ struct found {
 };
 
 struct work {
-    const struct orl_log *log;
     const struct orl_pair *pairs;
     size_t count;
     struct orl_features *photos; // owned; those of the pairs are filled
@@ -81,7 +80,7 @@ enum orl_result orl_raw_matches_write(const struct orl_log *log,
                                       size_t photo_count, const struct orl_pair *pairs,
                                       size_t count)
 {
-    struct work work = {.log = log, .pairs = pairs, .count = count};
+    struct work work = {.pairs = pairs, .count = count};
     work.photos = orl_array(log, photo_count, sizeof *work.photos);
     work.found = orl_array(log, count, sizeof *work.found);
     enum orl_result result = work.photos && work.found ? ORL_OK : ORL_ERR_MEMORY;
