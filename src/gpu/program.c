@@ -135,8 +135,7 @@ static struct orl_prog *get(struct orl_gpu *gpu, const struct stage *stages, siz
             free(key);
             return gpu->progs[i];
         }
-    if (key && orl_grow(gpu->log, (void **)&gpu->progs, &gpu->prog_capacity, gpu->prog_count + 1,
-                        sizeof *gpu->progs) == ORL_OK)
+    if (key && ORL_GROW(gpu->log, gpu->progs, gpu->prog_capacity, gpu->prog_count) == ORL_OK)
         prog = orl_array(gpu->log, 1, sizeof *prog);
     if (!prog) {
         free(key);

@@ -70,8 +70,7 @@ static enum orl_result list_pictures(const struct orl_log *log, struct orl_live_
         int64_t number = number_of(entry->d_name);
         if (number <= camera->last)
             continue;
-        result = orl_grow(log, (void **)&camera->pictures, &camera->capacity, camera->count + 1,
-                          sizeof *camera->pictures);
+        result = ORL_GROW(log, camera->pictures, camera->capacity, camera->count);
         char *path = result == ORL_OK ? orl_path_join(log, camera->folder, entry->d_name) : NULL;
         if (path)
             camera->pictures[camera->count++] = (struct orl_live_picture){number, path};
