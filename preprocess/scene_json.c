@@ -94,8 +94,7 @@ static json_t *counts(const struct orl_job *job, const json_t *done, const json_
 {
     size_t test = 0;
     for (size_t i = 0; i < json_array_size(photos); i++) {
-        const char *split =
-            json_string_value(json_object_get(json_array_get(photos, i), "split"));
+        const char *split = orl_json_text(json_array_get(photos, i), "split");
         test += split && strcmp(split, "test") == 0;
     }
     json_int_t registered = (json_int_t)json_array_size(photos);

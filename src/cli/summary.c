@@ -35,7 +35,7 @@ static void print_stages(const json_t *stages)
     const json_t *record;
     json_object_foreach((json_t *)(uintptr_t)stages, name, record) {
         double own = number(record, "peak_rss_mib"), child = number(record, "child_peak_rss_mib");
-        const char *tool = json_string_value(json_object_get(record, "tool"));
+        const char *tool = orl_json_text(record, "tool");
         double stage_peak = fmax(own, child);
         printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  %s\n", name, number(record, "wall_s"),
                number(record, "cpu_s"), stage_peak, tool ? tool : "");
@@ -54,8 +54,8 @@ static void print_left_out(const json_t *list)
     size_t i;
     const json_t *entry;
     json_array_foreach((json_t *)(uintptr_t)list, i, entry) {
-        const char *name = json_string_value(json_object_get(entry, "name"));
-        const char *why = json_string_value(json_object_get(entry, "why"));
+        const char *name = orl_json_text(entry, "name");
+        const char *why = orl_json_text(entry, "why");
         char shown[ORL_TEXT_SHOWN];
         orl_text_escape(name ? name : "?", shown, sizeof shown);
         if (i == LEFT_OUT_SHOWN) {

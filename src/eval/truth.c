@@ -26,7 +26,7 @@ static enum orl_result take_exposures(const struct orl_log *log, const char *pat
         bool found = false;
         for (size_t k = 0; k < json_array_size(photos) && !found; k++) {
             const json_t *entry = json_array_get(photos, k);
-            const char *photo = json_string_value(json_object_get(entry, "photo"));
+            const char *photo = orl_json_text(entry, "photo");
             const json_t *ev = json_object_get(entry, "exposure_ev");
             found = photo && same_stem(photo, name) && json_is_number(ev);
             if (found)

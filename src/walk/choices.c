@@ -27,8 +27,7 @@ static json_t *option_json(const struct orl_render_option *option)
                        ? json_pack("{s:f, s:f, s:s}", "least", option->least, "most", option->most,
                                    "unit", option->unit)
                        : json_pack("{s:o}", "names", names_json(option));
-    json_object_update(json, more);
-    json_decref(more);
+    json_object_update_new(json, more);
     return json;
 }
 

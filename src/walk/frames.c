@@ -76,7 +76,7 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
     const json_t *number = json_object_get(root, "number");
     const json_t *quality = json_object_get(root, "quality");
-    const char *layer = json_string_value(json_object_get(root, "layer"));
+    const char *layer = orl_json_text(root, "layer");
     int index = 0;
     while (layer && index < WALK_LAYERS && strcmp(layer_names[index], layer) != 0)
         index++;

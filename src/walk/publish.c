@@ -54,7 +54,7 @@ static enum orl_result check_out(const struct orl_log *log, const char *out, boo
     json_t *manifest = NULL;
     const struct orl_log quiet = {.level = ORL_LOG_ERROR};
     bool ours = orl_path_is_file(path) && orl_json_read(&quiet, path, &manifest) == ORL_OK;
-    const char *format = json_string_value(json_object_get(manifest, "format"));
+    const char *format = orl_json_text(manifest, "format");
     ours = ours && format && strcmp(format, "oriel site") == 0;
     json_decref(manifest);
     return ours ? ORL_OK : orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: is a folder that is no site "

@@ -155,9 +155,9 @@ enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *w
         return orl_fail(log, ORL_ERR_FORMAT, "%s: is no JSON object", where);
     json_object_foreach((json_t *)settings, key, value) {
         size_t i = 0;
-        while (i < sizeof rows / sizeof *rows && strcmp(rows[i].key, key) != 0)
+        while (i < ORL_COUNT(rows) && strcmp(rows[i].key, key) != 0)
             i++;
-        if (i == sizeof rows / sizeof *rows)
+        if (i == ORL_COUNT(rows))
             return orl_fail(log, ORL_ERR_FORMAT, "%s: \"%s\" is not known", where, key);
         if (!rows[i].valid(value))
             return orl_json_refuse(&place, key, rows[i].wanted);

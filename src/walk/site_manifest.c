@@ -117,12 +117,10 @@ enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *pho
     json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o*, s:o*}", "poster", orl_site_file(site, "poster.jpg"),
                              "options", options_json(&site->render), "points", points, "photos",
                              photos, "steps", steps, "soft", soft);
-    if (!root || !more || json_object_update(root, more) != 0) {
+    if (json_object_update_new(root, more) != 0) {
         json_decref(root);
-        json_decref(more);
         return ORL_ERR_MEMORY;
     }
-    json_decref(more);
     if (site->params->radiance)
         json_object_set_new(root, "radiance", json_pack("{s:f, s:f}", "peak", site->range.peak,
                                                         "mu", site->range.mu));
