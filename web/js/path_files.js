@@ -2,7 +2,7 @@
 import {secondsFrom, SECONDS_A_KEY, viewAt} from "./keyframes.js";
 import {cross, dot, normalize, sub} from "./math.js";
 import {text} from "./strings.js";
-import {photoView, viewFromKey, viewToKey} from "./view.js";
+import {fovOf, photoView, viewFromKey, viewToKey} from "./view.js";
 
 const FPS = 24;
 const SIZE = [1280, 720]; // of a video
@@ -19,7 +19,6 @@ export function orielPath(keys, seconds)
             keyframes: keys.map(key => ({...viewToKey(key), seconds: secondsFrom(key)}))};
 }
 
-const fovOf = view => viewToKey(view).fov_y_deg;
 // From camera to world, row by row, with axes as in OpenGL.
 const openglMatrix = ({r, eye}) => [0, 1, 2].flatMap(k => [r[k], -r[3 + k], -r[6 + k], eye[k]]).concat(0, 0, 0, 1);
 
@@ -31,12 +30,12 @@ export function nerfstudioPath(keys, seconds)
     const views = [...Array(count).keys()].map(i => count > 1 ? viewAt(keys, i / (count - 1)) : keys[0]);
     return {
         camera_type: "perspective", render_width: SIZE[0], render_height: SIZE[1], fps: FPS, seconds,
-        is_cycle: false, smoothness_value: 0, default_fov: fovOf(keys[0]), default_transition_sec: SECONDS_A_KEY,
+        is_cycle: false, smoothness_value: 0, default_fov: fovOf(keys[0].frame), default_transition_sec: SECONDS_A_KEY,
         keyframes: keys.map((key, i) => ({
-            matrix: openglMatrix(key), fov: fovOf(key), aspect, override_transition_enabled: i > 0,
+            matrix: openglMatrix(key), fov: fovOf(key.frame), aspect, override_transition_enabled: i > 0,
             override_transition_sec: i > 0 ? secondsFrom(keys[i - 1]) : null, // from the one before
         })),
-        camera_path: views.map(view => ({camera_to_world: openglMatrix(view), fov: fovOf(view), aspect})),
+        camera_path: views.map(view => ({camera_to_world: openglMatrix(view), fov: fovOf(view.frame), aspect})),
     };
 }
 
@@ -63,8 +62,6 @@ function rowsOf(key)
     return [right, cross(forward, right), forward].map(axis => [...axis, -dot(axis, position)]);
 }
 
-const fovIn = frame => 2 * Math.atan(0.5 / frame.fy) * 180 / Math.PI;
-
 // A keyframe of Oriel; null: it is not usable.
 function orielView(key, photos, frame)
 {
@@ -74,7 +71,7 @@ function orielView(key, photos, frame)
                                      : view || null;
     }
     const rows = rowsOf(key);
-    return rows && viewFromKey({cam_from_world: rows, fov_y_deg: key.fov_y_deg || fovIn(frame)}, frame);
+    return rows && viewFromKey({cam_from_world: rows, fov_y_deg: key.fov_y_deg || fovOf(frame)}, frame);
 }
 
 // A keyframe or a frame of nerfstudio: its matrix row by row, or column by column as older files have

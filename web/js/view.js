@@ -79,10 +79,12 @@ export const isBehind = (depth, surface) => surface > 0 && depth > BEHIND * surf
 
 // --- in files: keyframes of src/scene/path.c, views of walk.json ---
 
+export const fovOf = frame => 2 * Math.atan(0.5 / frame.fy) * 180 / Math.PI; // from top to bottom, degrees
+
 export function viewToKey({r, eye, frame})
 {
     const rows = [0, 1, 2].map(i => [...row(r, i), -dot(row(r, i), eye)]);
-    return {cam_from_world: rows, fov_y_deg: 2 * Math.atan(0.5 / frame.fy) * 180 / Math.PI};
+    return {cam_from_world: rows, fov_y_deg: fovOf(frame)};
 }
 
 // null unless it is one; the frame is `frame`, its focal length aside.
