@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "preprocess/cloud/clusters.h"
 
 // Bytes for each pixel: its depth, the pixels that are found, and the points, which are about a third
@@ -42,18 +43,12 @@ double orl_fuse_bytes(double pixels)
     return PROGRAM_BYTES + PIXEL_BYTES * pixels;
 }
 
-static int compare_falling(const void *left, const void *right)
-{
-    double a = *(const double *)left, b = *(const double *)right;
-    return a > b ? -1 : a < b;
-}
-
-// Bytes of a fusion of `count` photographs at most, when they are the largest.
-static double max_bytes(const double *falling, size_t count)
+// Bytes of a fusion of `fused` of `count` photographs at most, when they are the largest.
+static double max_bytes(const double *rising, size_t count, size_t fused)
 {
     double pixels = 0;
-    for (size_t i = 0; i < count; i++)
-        pixels += falling[i];
+    for (size_t i = count - fused; i < count; i++)
+        pixels += rising[i];
     return orl_fuse_bytes(pixels);
 }
 
@@ -62,21 +57,21 @@ enum orl_result orl_fuse_plan_size(const struct orl_log *log, const struct orl_c
                                    size_t *size)
 {
     size_t count = 0;
-    double *falling = orl_array(log, model->image_count + 1, sizeof *falling);
-    ORL_TRY_MEMORY(falling);
+    double *rising = orl_array(log, model->image_count + 1, sizeof *rising);
+    ORL_TRY_MEMORY(rising);
     for (size_t i = 0; i < model->image_count; i++)
         if (orl_names_contain(names, model->images[i].name))
-            falling[count++] = pixels_of(model, &model->images[i]);
-    qsort(falling, count, sizeof *falling, compare_falling);
+            rising[count++] = pixels_of(model, &model->images[i]);
+    qsort(rising, count, sizeof *rising, orl_order_doubles);
     size_t members = count < most ? count : most;
     for (size_t clusters = 2; members > LEAST; clusters++) {
         size_t fused = members < count ? members + orl_clusters_helpers(members) : count;
-        if (max_bytes(falling, fused < count ? fused : count) <= budget)
+        if (max_bytes(rising, count, fused < count ? fused : count) <= budget)
             break;
         size_t fewer = (count + clusters - 1) / clusters;
         members = fewer < members ? fewer : members;
     }
     *size = members ? members : most;
-    free(falling);
+    free(rising);
     return ORL_OK;
 }

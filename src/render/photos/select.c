@@ -165,12 +165,6 @@ static int better(const void *a, const void *b)
     return (x->photo > y->photo) - (x->photo < y->photo);
 }
 
-static int by_photo(const void *a, const void *b)
-{
-    const struct candidate *x = a, *y = b;
-    return (x->photo > y->photo) - (x->photo < y->photo);
-}
-
 // Sorts the candidates: first those that a sample point has marked, then by total score.
 static void rank(const struct frame *frame, struct candidate *candidates, double *scores,
                  size_t count)
@@ -210,12 +204,12 @@ static enum orl_result choose_best(struct frame *frame, size_t most)
     if (usable > most) {
         rank(frame, candidates, scores, usable);
         usable = most;
-        qsort(candidates, usable, sizeof *candidates, by_photo);
     }
     for (size_t i = 0; i < usable; i++) {
         frame->chosen[i] = candidates[i].photo;
         frame->selected[i][0] = 1;
     }
+    qsort(frame->chosen, usable, sizeof *frame->chosen, orl_order_sizes);
     frame->chosen_count = usable;
 end:
     free(candidates);
