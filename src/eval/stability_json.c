@@ -16,20 +16,16 @@ static json_t *step_json(const struct orl_stability_step *s)
 static json_t *stability_json(const struct orl_scene *scene, const struct orl_stability *s)
 {
     json_t *steps = json_array();
-    bool ok = steps != NULL;
-    for (size_t i = 0; ok && i < s->step_count; i++)
-        ok = json_array_append_new(steps, step_json(&s->steps[i])) == 0;
-    json_t *object =
-        json_pack("{s:o,s:s,s:s,s:[ii],s:I,s:f,s:I,s:I,s:o,s:O}", "scene", orl_json_string(scene->dir), "method",
-                  s->method, "device", s->device, "size", s->width, s->height, "frames",
-                  (json_int_t)(s->step_count + 1), "render_ms", s->render_ms, "worst_block_step",
-                  (json_int_t)s->worst_block_step, "worst_jump_step",
-                  (json_int_t)s->worst_jump_step, "all", step_json(&s->all), "steps", steps);
-    json_decref(steps);
-    if (ok)
-        return object;
-    json_decref(object);
-    return NULL;
+    for (size_t i = 0; steps && i < s->step_count; i++)
+        if (json_array_append_new(steps, step_json(&s->steps[i])) != 0) {
+            json_decref(steps);
+            steps = NULL;
+        }
+    return json_pack("{s:o,s:s,s:s,s:[ii],s:I,s:f,s:I,s:I,s:o,s:o}", "scene", orl_json_string(scene->dir), "method",
+                     s->method, "device", s->device, "size", s->width, s->height, "frames",
+                     (json_int_t)(s->step_count + 1), "render_ms", s->render_ms, "worst_block_step",
+                     (json_int_t)s->worst_block_step, "worst_jump_step",
+                     (json_int_t)s->worst_jump_step, "all", step_json(&s->all), "steps", steps);
 }
 
 char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *scene,
