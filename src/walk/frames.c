@@ -286,15 +286,15 @@ enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_req
     return result;
 }
 
-enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene,
+enum orl_result orl_walk_warm_up(struct walk_renderer *walk,
                                  const struct orl_render_params *params)
 {
     enum { WIDTH = 640 };
     static const double max_s = 4; // of processor time: a busy machine gets as far as an idle one
     struct walk_request request = {.quality = 75, .tone = {ORL_TONE_DEFAULTS}};
     size_t start_photo;
-    ORL_TRY(orl_walk_start(walk->log, scene, &start_photo));
-    request.view = scene->photos[start_photo].view;
+    ORL_TRY(orl_walk_start(walk->log, walk->scene, &start_photo));
+    request.view = walk->scene->photos[start_photo].view;
     struct orl_camera *c = &request.view.camera;
     *c = orl_camera_resized(c, WIDTH, WIDTH * c->height / c->width + 1);
     // The first frame compiles the programs, which is no measure of those that follow.

@@ -170,7 +170,7 @@ enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_req
                                struct walk_frame *frame);
 // Draws the start view until its first photographs are there, for a few seconds of processor time:
 // the first frame of a client finds programs compiled and something to paint from.
-enum orl_result orl_walk_warm_up(struct walk_renderer *walk, const struct orl_scene *scene,
+enum orl_result orl_walk_warm_up(struct walk_renderer *walk,
                                  const struct orl_render_params *params);
 
 #endif

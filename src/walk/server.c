@@ -539,7 +539,7 @@ static enum orl_result listen_there(struct server *server)
         {NULL, NULL, 0, 0, 0, NULL, 0}};
     const struct orl_walk_params *params = server->params;
     struct lws_context_creation_info info = {
-        .port = params->port ? params->port : 0, .iface = params->host, .protocols = protocols,
+        .port = params->port, .iface = params->host, .protocols = protocols,
         .user = server, .headers = server->headers, .timeout_secs = IDLE_S, .keepalive_timeout = IDLE_S,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND, .gid = (gid_t)-1, .uid = (uid_t)-1};
     lws_set_log_level(LLL_ERR, NULL);
@@ -660,7 +660,7 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
     ORL_THEN(result, orl_content_init(log, scene, params->title, edits, params->choice, &server.content));
     ORL_THEN(result, check_address(log, params->host));
     ORL_THEN(result, make_token(&server));
-    ORL_THEN(result, orl_walk_warm_up(&server.walk, scene, &params->choice->params));
+    ORL_THEN(result, orl_walk_warm_up(&server.walk, &params->choice->params));
     ORL_THEN(result, make_headers(&server));
     ORL_THEN(result, listen_there(&server));
     ORL_THEN(result, serve(&server));
