@@ -57,7 +57,7 @@ static bool has_values(const struct orl_option *row)
 static bool is_file(const struct orl_option *row)
 {
     static const char *const words[] = {"FILE", "DIR", "SCENE", "SITE"};
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    for (size_t i = 0; i < ORL_COUNT(words); i++)
         if (strstr(row->meta, words[i]))
             return true;
     return false;
