@@ -9,16 +9,13 @@ precision highp usampler2D;
 precision highp sampler2DArray;
 `;
 
-// Format, type of the pixels that fill it.
+// Format and type of the pixels that fill it, and bytes of a pixel.
 const FORMATS = {
-    R16F: ["RED", "HALF_FLOAT"], R32F: ["RED", "FLOAT"], RG32F: ["RG", "FLOAT"],
-    RG16F: ["RG", "HALF_FLOAT"],
-    RGBA8: ["RGBA", "UNSIGNED_BYTE"], SRGB8_ALPHA8: ["RGBA", "UNSIGNED_BYTE"],
-    RGBA16F: ["RGBA", "HALF_FLOAT"], RGBA32F: ["RGBA", "FLOAT"], R32UI: ["RED_INTEGER", "UNSIGNED_INT"],
-    RG32UI: ["RG_INTEGER", "UNSIGNED_INT"],
+    R16F: ["RED", "HALF_FLOAT", 2], R32F: ["RED", "FLOAT", 4], RG16F: ["RG", "HALF_FLOAT", 4],
+    RGBA8: ["RGBA", "UNSIGNED_BYTE", 4], SRGB8_ALPHA8: ["RGBA", "UNSIGNED_BYTE", 4],
+    RGBA16F: ["RGBA", "HALF_FLOAT", 8], RGBA32F: ["RGBA", "FLOAT", 16],
+    R32UI: ["RED_INTEGER", "UNSIGNED_INT", 4], RG32UI: ["RG_INTEGER", "UNSIGNED_INT", 8],
 };
-const BYTES = {R16F: 2, R32F: 4, RG32F: 8, RG16F: 4, RGBA8: 4, SRGB8_ALPHA8: 4, RGBA16F: 8, RGBA32F: 16,
-               R32UI: 4, RG32UI: 8};
 const FILTERED = new Set(["R16F", "RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
 
 // Why this browser draws no walk.
@@ -104,7 +101,7 @@ export class Device {
         gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, levels > 1 ? mipmapped : filter);
         gl.texParameteri(kind, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
         gl.texParameteri(kind, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-        const bytes = BYTES[format] * width * height * Math.max(layers, 1) * (levels > 1 ? 4 / 3 : 1);
+        const bytes = FORMATS[format][2] * width * height * Math.max(layers, 1) * (levels > 1 ? 4 / 3 : 1);
         this.bytes += bytes;
         return {id, kind, format, width, height, levels, layers, bytes};
     }

@@ -17,22 +17,20 @@ function readCells(data)
                     radiusOctaves: f[7], count: u[8], loaded: 0, coarse: u[9], file: u[10], first: u[11], base});
         base += u[8];
     }
-    return {cells, stride: header[3], points: base,
-            coarseAt: HEADER_BYTES + 4 * CELL_WORDS * header[2]};
+    return {cells, points: base, coarseData: new Uint8Array(data, HEADER_BYTES + 4 * CELL_WORDS * header[2])};
 }
 
 export class Cloud {
     constructor(device, data)
     {
         const {gl} = device, read = readCells(data);
-        this.bytes = read.points * read.stride;
+        this.bytes = read.points * POINT_BYTES;
         const rows = [[3, gl.UNSIGNED_SHORT, 0], [2, gl.BYTE, 6], [4, gl.UNSIGNED_BYTE, 8]];
-        Object.assign(this, read, {gl}, device.vertices(this.bytes, gl.STATIC_DRAW, read.stride, rows));
-        this.coarseData = new Uint8Array(data, this.coarseAt);
+        Object.assign(this, read, {gl}, device.vertices(this.bytes, gl.STATIC_DRAW, POINT_BYTES, rows));
         let at = 0;
         for (const cell of this.cells) {
             this.append(cell, this.coarseData, at, cell.coarse);
-            at += cell.coarse * this.stride;
+            at += cell.coarse * POINT_BYTES;
         }
     }
 
@@ -46,8 +44,8 @@ export class Cloud {
     {
         const gl = this.gl;
         gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-        gl.bufferSubData(gl.ARRAY_BUFFER, (cell.base + cell.loaded) * this.stride, bytes, at,
-                         count * this.stride);
+        gl.bufferSubData(gl.ARRAY_BUFFER, (cell.base + cell.loaded) * POINT_BYTES, bytes, at,
+                         count * POINT_BYTES);
         cell.loaded += count;
     }
 
@@ -57,7 +55,7 @@ export class Cloud {
         const bytes = new Uint8Array(data);
         for (const cell of this.cells)
             if (cell.file === number && cell.loaded < cell.count)
-                this.append(cell, bytes, cell.first * this.stride, cell.count - cell.loaded);
+                this.append(cell, bytes, cell.first * POINT_BYTES, cell.count - cell.loaded);
     }
 
     get loaded() { return this.cells.reduce((sum, cell) => sum + cell.loaded, 0); }
@@ -68,7 +66,7 @@ export class Cloud {
         const view = new DataView(this.coarseData.buffer, this.coarseData.byteOffset);
         let at = 0;
         for (const cell of this.cells) {
-            for (let i = 0; i < cell.coarse; i++, at += this.stride) {
+            for (let i = 0; i < cell.coarse; i++, at += POINT_BYTES) {
                 const p = [0, 1, 2].map(k => cell.low[k] + cell.size[k] *
                                              view.getUint16(at + 2 * k, true) / 65535);
                 visit(p, [view.getUint8(at + 8), view.getUint8(at + 9), view.getUint8(at + 10)]);
