@@ -46,19 +46,15 @@ export class Map2d {
         this.background = null;
     }
 
-    place(p, size)
-    {
-        const [x, y] = this.flat(p);
-        return [(x - this.left) / this.side * size, (y - this.top) / this.side * size];
-    }
+    onMap([x, y], size) { return [(x - this.left) / this.side * size, (y - this.top) / this.side * size]; }
+    place(p, size) { return this.onMap(this.flat(p), size); }
 
     drawBackground(size)
     {
         const canvas = make("canvas", {width: size, height: size});
         const context = canvas.getContext("2d"), image = context.createImageData(size, size);
         for (const [x, y, , color] of this.points) {
-            const px = Math.floor((x - this.left) / this.side * size);
-            const py = Math.floor((y - this.top) / this.side * size);
+            const [px, py] = this.onMap([x, y], size).map(Math.floor);
             if (px >= 0 && py >= 0 && px < size && py < size)
                 image.data.set([...color, 200], 4 * (py * size + px));
         }

@@ -107,10 +107,9 @@ export class Navigator {
     // Directions of the keys in the world.
     axes()
     {
-        const forward = forwardOf(this.view), right = rightOf(this.view);
-        if (this.mode !== "walk")
-            return [right, this.mode === "fly" ? this.up : upOf(this.view), forward];
-        return levelAxes(this.view, this.up);
+        if (this.mode === "walk")
+            return levelAxes(this.view, this.up);
+        return [rightOf(this.view), this.mode === "fly" ? this.up : upOf(this.view), forwardOf(this.view)];
     }
 
     shift(by)
