@@ -28,7 +28,7 @@ export class LivePicture {
         this.remote = true;    // frames come later than they are asked for
         this.pixelsMost = PIXELS_MAX;
         this.number = 0;       // of the last request
-        this.asked = null;     // {number, at, marks} of the one that is under way
+        this.asked = null;     // {at, marks} of the one that is under way
         this.next = null;      // to ask for once it has come
         this.shown = null;     // number, milliseconds, size of the frame that shows
         this.waiting = [];     // for a picture of its own: {request, done}
@@ -142,7 +142,7 @@ export class LivePicture {
         const request = this.waiting.length ? this.waiting[0].request : this.next;
         if (request === this.next)
             this.next = null;
-        this.asked = {number: request.number, at: performance.now(), marks: this.marks};
+        this.asked = {at: performance.now(), marks: this.marks};
         this.tell(request);
         this.silence = setTimeout(() => {
             this.problem = text.silentServer;

@@ -57,7 +57,7 @@ export function quatFromRotation(r)
     return normalizeQuat(q);
 }
 
-export function normalizeQuat(q)
+function normalizeQuat(q)
 {
     const l = Math.hypot(...q) || 1;
     return q.map(x => x / l);

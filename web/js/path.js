@@ -12,7 +12,7 @@ export class PathEditor {
     constructor(navigator, {wake, name, tour, onTour, render, keep})
     {
         const t = text.path;
-        Object.assign(this, {navigator, wake, name, onTour, plays: false});
+        Object.assign(this, {navigator, wake, onTour, plays: false});
         this.keys = [];         // views, some with seconds to the next one
         this.element = byId("path");
         this.element.setAttribute("aria-label", text.path.title);

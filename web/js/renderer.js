@@ -176,7 +176,7 @@ export class Renderer {
                        ground: this.groundAlongRays(camera)};
         this.splat(camera, o);
         this.pullPush();
-        const pointsOnly = LAYERS[layer] === "points" || this.photos.ready.length === 0;
+        const pointsOnly = layer === POINTS_LAYER || this.photos.ready.length === 0;
         this.fillIn(f.fillDepth, this.programs.seedDepth, {...this.values, known: this.supported, normals: this.normals},
                     f.fillDepth.pulled[0], true);
         this.device.pass(this.programs.fillDepth, f.depth,
