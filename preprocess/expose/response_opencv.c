@@ -22,12 +22,6 @@ struct exposures {
     int count;
 };
 
-static void exposures_finish(struct exposures *e)
-{
-    free(e->of);
-    free(e->ev);
-}
-
 // The series of the photographs that take part, each with the exposure of its darkest photograph.
 static enum orl_result find_exposures(const struct orl_log *log, const struct orl_response_photo *photos,
                                       size_t photo_count, struct exposures *e)
@@ -157,6 +151,7 @@ end:
     orl_image_finish(&values);
     free(seen);
     free(light);
-    exposures_finish(&e);
+    free(e.of);
+    free(e.ev);
     return result;
 }
