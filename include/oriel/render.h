@@ -83,6 +83,9 @@ bool orl_render_option_name(const struct orl_render_option *option, size_t index
 // True if any part of the frame reads this option with these choices.
 bool orl_render_option_read(const struct orl_render_option *option,
                             const struct orl_render_params *params);
+// The value of an option that is a number.
+double orl_render_option_number(const struct orl_render_option *option,
+                                const struct orl_render_params *params);
 // Prints the option's value in the form that --set takes.
 void orl_render_option_print(const struct orl_render_option *option,
                              const struct orl_render_params *params, char *text, size_t size);

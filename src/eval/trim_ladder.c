@@ -52,14 +52,6 @@ static const struct rung ladder[] = {
 
 // --- options ---
 
-static double number_of(const struct orl_render_option *option,
-                        const struct orl_render_params *render)
-{
-    float value;
-    memcpy(&value, (const char *)render + option->offset, sizeof value);
-    return (double)value;
-}
-
 static const struct orl_render_option *option_of(const char *assignment)
 {
     char key[64];
@@ -77,7 +69,7 @@ static bool assign(const struct orl_render_params *render, const char *assignmen
     if (!option || orl_render_params_set(NULL, next, assignment) != ORL_OK)
         return false;
     if (option->kind == ORL_OPTION_NUMBER)
-        return number_of(option, next) < number_of(option, render);
+        return orl_render_option_number(option, next) < orl_render_option_number(option, render);
     return memcmp(next, render, sizeof *next) != 0;
 }
 

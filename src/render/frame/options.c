@@ -61,12 +61,18 @@ static const void *field_of(const struct orl_render_option *option,
     return (const char *)params + option->offset;
 }
 
+double orl_render_option_number(const struct orl_render_option *option,
+                                const struct orl_render_params *params)
+{
+    return (double)*(const float *)field_of(option, params);
+}
+
 void orl_render_option_print(const struct orl_render_option *option,
                              const struct orl_render_params *params, char *text, size_t size)
 {
     char name[ORL_OPTION_NAME_BYTES] = "";
     if (option->kind == ORL_OPTION_NUMBER) {
-        snprintf(text, size, "%.9g", (double)*(const float *)field_of(option, params));
+        snprintf(text, size, "%.9g", orl_render_option_number(option, params));
         return;
     }
     const void *slot;
