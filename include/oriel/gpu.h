@@ -101,6 +101,14 @@ struct orl_tex {
 // Creates a texture filled with zeros. Texture coordinates clamp to the edge.
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out) ORL_CHECK_RESULT;
+// One of several textures of the same size.
+struct orl_tex_row {
+    const char *tag;
+    GLenum format;
+    struct orl_tex **tex;
+};
+enum orl_result orl_tex_create_rows(struct orl_gpu *gpu, int width, int height, const struct orl_tex_row *rows,
+                                    size_t count) ORL_CHECK_RESULT;
 // Keeps *tex, which may be NULL, if it has this size, as many levels and this format; else a new texture
 // takes its place.
 enum orl_result orl_tex_fit(struct orl_gpu *gpu, const struct orl_tex_params *params,

@@ -92,23 +92,6 @@ static struct orl_prog *program_of(const struct densify_device *device, enum pro
 
 // --- upload ---
 
-static enum orl_result make_state(struct orl_gpu *gpu, struct level *level, int width, int height)
-{
-    const struct {
-        struct orl_tex **tex;
-        GLenum format;
-        const char *tag;
-    } table[] = {{&level->planes, GL_RGBA32F, "densify planes"},
-                 {&level->costs, GL_R32F, "densify costs"},
-                 {&level->view_costs, GL_RGBA32UI, "densify view costs"}};
-    for (size_t i = 0; i < ORL_COUNT(table); i++) {
-        struct orl_tex_params params = {.width = width, .height = height,
-                                        .format = table[i].format, .tag = table[i].tag};
-        ORL_TRY(orl_tex_create(gpu, &params, table[i].tex));
-    }
-    return ORL_OK;
-}
-
 bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y)
 {
     if (!mask->data)
@@ -406,8 +389,11 @@ static enum orl_result finish(const struct densify_device *device, const struct 
 static enum orl_result level_open(const struct densify_device *device, const struct densify_job *job,
                                   struct level *level)
 {
+    const struct orl_tex_row rows[] = {{"densify planes", GL_RGBA32F, &level->planes},
+                                       {"densify costs", GL_R32F, &level->costs},
+                                       {"densify view costs", GL_RGBA32UI, &level->view_costs}};
     set_block(device, job, level);
-    ORL_TRY(make_state(device->gpu, level, level->block.area[0], level->block.area[1]));
+    ORL_TRY(orl_tex_create_rows(device->gpu, level->block.area[0], level->block.area[1], rows, ORL_COUNT(rows)));
     ORL_TRY(upload_reference(device->gpu, job, level));
     return upload_sources(device, job, level);
 }

@@ -184,6 +184,17 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     return ORL_OK;
 }
 
+enum orl_result orl_tex_create_rows(struct orl_gpu *gpu, int width, int height, const struct orl_tex_row *rows,
+                                    size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const struct orl_tex_params params = {.width = width, .height = height,
+                                              .format = rows[i].format, .tag = rows[i].tag};
+        ORL_TRY(orl_tex_create(gpu, &params, rows[i].tex));
+    }
+    return ORL_OK;
+}
+
 enum orl_result orl_tex_fit(struct orl_gpu *gpu, const struct orl_tex_params *params,
                             struct orl_tex **tex)
 {

@@ -30,21 +30,12 @@ enum orl_result orl_raster_target_resize(struct orl_gpu *gpu, const void *state,
     ORL_TRY_MEMORY(target);
     target->width = width;
     target->height = height;
-    const struct {
-        const char *tag;
-        GLenum format;
-        struct orl_tex **tex;
-    } rows[] = {
+    const struct orl_tex_row rows[] = {
         {"proxy depth", GL_R32F, &target->depth},
         {"proxy normal", GL_RGBA16F, &target->normal},
         {"proxy depth test", GL_DEPTH_COMPONENT32F, &target->test},
     };
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(rows); i++) {
-        struct orl_tex_params params = {.width = width, .height = height,
-                                        .format = rows[i].format, .tag = rows[i].tag};
-        result = orl_tex_create(gpu, &params, rows[i].tex);
-    }
+    enum orl_result result = orl_tex_create_rows(gpu, width, height, rows, ORL_COUNT(rows));
     if (result != ORL_OK)
         orl_raster_target_free(gpu, out);
     return result;

@@ -99,11 +99,7 @@ static enum orl_result make_target(struct orl_gpu *gpu, bool chunks, int width, 
     target->width = width;
     target->height = height;
     target->levels = pyramid_levels(width, height);
-    const struct {
-        const char *tag;
-        GLenum format;
-        struct orl_tex **tex;
-    } rows[] = {
+    const struct orl_tex_row rows[] = {
         {"splat depth", GL_R32UI, &target->splat_depth},
         {"splat index", GL_R32UI, &target->splat_index},
         {"splat layer", GL_R32UI, &target->splat_layer},
@@ -113,14 +109,8 @@ static enum orl_result make_target(struct orl_gpu *gpu, bool chunks, int width, 
         {"proxy normal", GL_RGBA16F, &target->normal},
         {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
     };
-    size_t count = ORL_COUNT(rows) - (chunks ? 0 : 1);
-    enum orl_result result = make_pyramid(gpu, target);
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        struct orl_tex_params params = {.width = width, .height = height,
-                                        .format = rows[i].format, .tag = rows[i].tag};
-        result = orl_tex_create(gpu, &params, rows[i].tex);
-    }
-    return result;
+    ORL_TRY(make_pyramid(gpu, target));
+    return orl_tex_create_rows(gpu, width, height, rows, ORL_COUNT(rows) - (chunks ? 0 : 1));
 }
 
 static void free_target(struct orl_gpu *gpu, void **target)
