@@ -1,6 +1,5 @@
 #include "preprocess/cloud/fuse.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "core/file.h"

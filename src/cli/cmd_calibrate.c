@@ -1,5 +1,4 @@
 // oriel job calibrate: a part of a calibration, as a job beside others.
-#include <stdlib.h>
 
 #include "cli/command.h"
 #include "preprocess/calibrate/parts.h"

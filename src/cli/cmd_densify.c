@@ -1,7 +1,5 @@
 // oriel densify: depth and normal maps for a COLMAP workspace, instead of colmap
 // patch_match_stereo.
-#include <stdio.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "preprocess/densify/densify.h"

@@ -1,7 +1,6 @@
 // oriel eval: compares held-out photographs with renderings.
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/command_output.h"

@@ -1,5 +1,4 @@
 // oriel job fuse: the points of one cluster of photographs, as a job beside others.
-#include <stdlib.h>
 
 #include "cli/command.h"
 #include "preprocess/cloud/fuse.h"

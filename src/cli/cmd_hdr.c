@@ -1,6 +1,5 @@
 // oriel hdr: radiance views, panoramas, scenes of radiance photographs.
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

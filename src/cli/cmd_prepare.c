@@ -1,5 +1,4 @@
 // oriel prepare: makes a scene from photographs.
-#include <stdio.h>
 
 #include "cli/command.h"
 #include "cli/summary.h"

@@ -1,6 +1,5 @@
 // oriel chart, stress and plot: reports that scripts make of what other commands measure. The
 // commands check the options and pass them on.
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,5 +1,4 @@
 // oriel synth: makes synthetic photographs with ground truth, of a monument or a moving figure.
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

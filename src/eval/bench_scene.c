@@ -1,6 +1,5 @@
 // Views for the benchmark, and scenes with more or fewer points.
 #include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/vec3.h"

@@ -1,6 +1,5 @@
 // A cache of linked programs that persists between runs. A failure here only means that a program
 // is compiled again, so nothing is reported above debug level.
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>

@@ -1,7 +1,6 @@
 // Writes a site part by part. The site takes its name only when it is complete.
 #include "walk/publish.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>

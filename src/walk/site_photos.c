@@ -1,6 +1,5 @@
 // A site's photographs: JPEGs, thumbnails, and a depth map of each.
 #include <math.h>
-#include <string.h>
 
 #include "bridge/bridge.h"
 #include "io/picture.h"

@@ -1,7 +1,6 @@
 #include "render/output/output.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "core/file.h"

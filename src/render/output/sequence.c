@@ -1,7 +1,5 @@
 #include "render/output/sequence.h"
 
-#include <string.h>
-
 #include "core/file.h"
 #include "io/video.h"
 

@@ -1,7 +1,6 @@
 #include "render/paint/tiled.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"

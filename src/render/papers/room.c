@@ -1,8 +1,6 @@
 #include "render/papers/room.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "render/frame/method.h"
 #include "render/paint/paint.h"

@@ -1,7 +1,6 @@
 // Reconstructs depth from points: compute splatting, then pull-push (Airieau 2012, 5.1).
 #include "render/proxy/splats.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
