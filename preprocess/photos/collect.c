@@ -30,13 +30,13 @@ static void keep_source(struct orl_job *job, struct orl_source *source, size_t *
     ++*kept;
 }
 
-// Keeps the sources that the test passes. Of those ahead of a source, the first `kept` are those that are kept.
-static void keep_those(struct orl_job *job,
-                       bool (*passes)(struct orl_job *job, struct orl_source *source, size_t kept))
+// Asks of each source whether it is dropped; `drops` is true if it has dropped it. The first `kept` sources are those
+// that have been kept so far.
+static void drop_each(struct orl_job *job, bool (*drops)(struct orl_job *job, struct orl_source *source, size_t kept))
 {
     size_t kept = 0;
     for (size_t i = 0; i < job->source_count; i++)
-        if (passes(job, &job->sources[i], kept))
+        if (!drops(job, &job->sources[i], kept))
             keep_source(job, &job->sources[i], &kept);
     job->source_count = kept;
 }
@@ -69,26 +69,26 @@ static void skip_for(struct orl_job *job, struct orl_source *source, const struc
 }
 
 // Drops an unreadable photograph that stands for a JPEG of the same name, so that the JPEG is used.
-static bool is_readable(struct orl_job *job, struct orl_source *source, size_t kept)
+static bool drop_unreadable(struct orl_job *job, struct orl_source *source, size_t kept)
 {
     (void)kept;
     struct reason reason = {"cannot be read"};
     struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
     struct orl_picture_info info;
-    bool good = !orl_develop_wanted(source->given) || orl_picture_inspect(&log, source->path, &info) == ORL_OK;
-    if (!good)
-        skip_for(job, source, &reason);
-    return good;
+    if (!orl_develop_wanted(source->given) || orl_picture_inspect(&log, source->path, &info) == ORL_OK)
+        return false;
+    skip_for(job, source, &reason);
+    return true;
 }
 
 // Drops the JPEG that a camera writes beside a RAW file: two photographs from one place would
 // mislead COLMAP.
-static bool is_best(struct orl_job *job, struct orl_source *source, size_t kept)
+static bool drop_jpeg_of_raw(struct orl_job *job, struct orl_source *source, size_t kept)
 {
     (void)kept;
     size_t stem = orl_path_stem(source->given);
-    bool best = true, may_be = orl_path_has_extension(source->given, "jpg jpeg");
-    for (size_t k = 0; may_be && k < job->source_count && best; k++) {
+    bool may_be = orl_path_has_extension(source->given, "jpg jpeg");
+    for (size_t k = 0; may_be && k < job->source_count; k++) {
         const char *other = job->sources[k].given;
         char why[512];
         if (!other || !orl_develop_wanted(other) || orl_path_stem(other) != stem ||
@@ -96,9 +96,9 @@ static bool is_best(struct orl_job *job, struct orl_source *source, size_t kept)
             continue;
         snprintf(why, sizeof why, "%s holds more of the same photograph", other);
         drop(job, source, source->path, why);
-        best = false;
+        return true;
     }
-    return best;
+    return false;
 }
 
 // A file given twice counts once. Two files of one name are an error, since COLMAP cannot tell them
@@ -198,17 +198,17 @@ static enum orl_result inspect_all(struct orl_job *job)
 
 // Drops a copy of a photograph whose name comes before. One photograph under two names (a link, a copy)
 // would be matched with itself, and a held-out one would be known to the renderer.
-static bool is_no_copy(struct orl_job *job, struct orl_source *source, size_t kept)
+static bool drop_copy(struct orl_job *job, struct orl_source *source, size_t kept)
 {
-    size_t k = 0;
-    while (k < kept && job->sources[k].hash != source->hash)
-        k++;
-    if (k < kept) {
+    for (size_t k = 0; k < kept; k++) {
         char why[512];
+        if (job->sources[k].hash != source->hash)
+            continue;
         snprintf(why, sizeof why, "the same file as %s", job->sources[k].given);
         drop(job, source, source->given, why); // the path may be that of the other
+        return true;
     }
-    return k == kept;
+    return false;
 }
 
 // Names blurred photographs and those that show the picture of another; leaves out those that the
@@ -299,11 +299,11 @@ enum orl_result orl_stage_collect(struct orl_job *job)
 {
     ORL_TRY(orl_photos_list(job));
     orl_masks_set_aside(job);
-    keep_those(job, is_readable);
-    keep_those(job, is_best);
+    drop_each(job, drop_unreadable);
+    drop_each(job, drop_jpeg_of_raw);
     ORL_TRY(drop_duplicates(job));
     ORL_TRY(inspect_all(job));
-    keep_those(job, is_no_copy);
+    drop_each(job, drop_copy);
     ORL_TRY(drop_doubtful(job));
     if (job->source_count < 3)
         return too_few(job);
