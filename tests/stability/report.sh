@@ -1,11 +1,10 @@
 #!/usr/bin/env bash
 # Writes docs/measured/robustness.md: fuzzes every reader, injects every fault, soaks, counts.
 # usage: tests/stability/report.sh BUILD [STEP]..
-# BUILD: a build folder with the program and tests. STEP: what to run now, each a section of the page
-# that names its commit; without any, all of them. A step that is not named keeps its section, or
-# gets a new one of what an earlier run left in FUZZ_DIR (build-fuzz).
+# BUILD: a build folder with the program and tests. STEP: what to run now; without any, all of them.
+# The page is written once FUZZ_DIR (build-fuzz) has all steps of one commit.
 #   fuzz       every reader for FUZZ_SECONDS (3; 0: only the inputs that there are); inputs tried add
-#              up over the runs of one commit, of each reader the last (tests/fuzz/run.sh)
+#              up over the runs of one commit (tests/fuzz/run.sh)
 #   faults     the first calls of a kind and then ever fewer, or with FAULTS=all every call in turn,
 #              which takes hours
 #   soak       SOAK_FRAMES (10000) frames and SOAK_ROUNDS (1000) openings
@@ -13,82 +12,65 @@
 #   sanitized  the tests of the whole program; SANITIZE_BUILD: configured with -DORL_SANITIZE=ON
 #   valgrind   every stored input and the unit tests
 set -u -o pipefail
-[ $# -ge 1 ] || { sed -n '3,15s/^# *//p' "$0"; exit 2; }
+[ $# -ge 1 ] || { sed -n '3,14s/^# *//p' "$0"; exit 2; }
 source=$(cd "$(dirname "$0")/../.." && pwd) build=$(realpath "$1")
 fuzz=${FUZZ_DIR:-$source/build-fuzz} page=$source/docs/measured/robustness.md
+steps=(fuzz faults soak threads sanitized valgrind)
+commit=$(git -C "$source" rev-parse --short=8 HEAD)
 shift
-[ $# -gt 0 ] || set -- fuzz faults soak threads sanitized valgrind
+[ $# -gt 0 ] || set -- "${steps[@]}"
 status=0
 mkdir -p "$fuzz/failures"
-
-# begin STEP: forgets what an earlier run found, and notes the commit that this one tries.
-begin() {
-    : >"$fuzz/$1.txt"
-    git -C "$source" rev-parse --short=8 HEAD >"$fuzz/$1.commit"
-}
 
 run_step() {
     local script
     case $1 in
-    fuzz)
-        "$source/tests/fuzz/run.sh" "${FUZZ_SECONDS:-3}"
-        local tried=$?
-        fuzz_rows | awk '{ print $4 }' >"$fuzz/fuzz.commit"
-        [ $tried -eq 0 ]
-        ;;
+    fuzz) "$source/tests/fuzz/run.sh" "${FUZZ_SECONDS:-3}" ;;
     faults)
-        begin faults
+        : >"$fuzz/faults.txt"
         for script in inject inject_prepare inject_publish inject_trim; do
             "$source/tests/stability/$script.sh" "$build/oriel" "$source" \
                 "$build/tests/libinject.so" "${FAULTS:-}" 2>&1 | tee -a "$fuzz/faults.txt" || status=1
         done
         ;;
     soak)
-        begin soak
         "$source/tests/stability/soak.sh" "$build/oriel" "$source" "$build/tests/soak" \
             "${SOAK_FRAMES:-10000}" "${SOAK_ROUNDS:-1000}" 2>&1 | tee "$fuzz/soak.txt"
         ;;
     threads)
-        begin threads
         "$source/tests/stability/threads.sh" "${THREADS_BUILD:?}" "$source" | tee "$fuzz/threads.txt"
         ;;
     sanitized)
-        begin sanitized
         ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "${SANITIZE_BUILD:?}" -L e2e \
             --output-on-failure | tee "$fuzz/sanitized.txt"
         ;;
     valgrind)
-        begin valgrind
         "$source/tests/stability/valgrind.sh" "$build" "$source" | tee "$fuzz/valgrind.txt"
         ;;
-    *) echo "no step $1" >&2 && false ;;
+    *) echo "no step $1" >&2 && exit 2 ;;
     esac || status=1
+    echo "$commit" >"$fuzz/$1.commit"
 }
 
-# Lines "READER INPUTS SECONDS COMMIT": the runs of each reader at the commit of its last one.
+# Lines "READER INPUTS SECONDS": of this commit.
 fuzz_rows() {
-    awk '{ last[$1] = $4; n[$1, $4] += $2; s[$1, $4] += $3 }
-         END { for (k in last) print k, n[k, last[k]], s[k, last[k]], last[k] }' "$fuzz/tried.txt" | sort
-}
-
-at_commit() {
-    sort -u "$fuzz/$1.commit" | paste -sd, | sed 's/,/, /g; s/.*/At commit &./'
-    echo
+    awk -v commit="$commit" '$4 == commit { n[$1] += $2; s[$1] += $3 }
+                             END { for (k in n) print k, n[k], s[k] }' "$fuzz/tried.txt" | sort
 }
 
 fuzz_section() {
-    local name inputs time commit left
+    local name inputs time left
     echo "## Inputs tried"
     echo
     echo "libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, with memory limited."
     echo
-    echo "| reader | inputs tried | seconds of processor time | commit | failures left |"
-    echo "|---|--:|--:|---|--:|"
-    fuzz_rows | while read -r name inputs time commit; do
+    echo "| reader | inputs tried | seconds of processor time | failures left |"
+    echo "|---|--:|--:|--:|"
+    fuzz_rows | while read -r name inputs time; do
         left=$(find "$fuzz/failures" -name "$name-*" | wc -l)
-        printf '| %s | %s | %.0f | %s | %s |\n' "$name" "$inputs" "$time" "$commit" "$left"
+        printf '| %s | %s | %.0f | %s |\n' "$name" "$inputs" "$time" "$left"
     done
-    fuzz_rows | awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | | ", n, s, s / 3600 }'
+    fuzz_rows | awk '{ n += $2; s += $3 } END { printf "| **all** | %d | %d (%.2f hours) | ", n, s, s / 3600 }'
     echo "$(find "$fuzz/failures" -type f | wc -l) |"
     echo
     echo "### Lines of each reader that these inputs reach"
@@ -116,11 +98,11 @@ faults_section() {
     echo "are the first six calls of a kind and then every so many, in \`prepare\` calls 1, 3, 9 and so on, in"
     echo "\`trim\` 1, 32 and 1024, in \`publish\` those around the exchange of the two sites."
     echo
-    echo "| fault | times | commit | files cut, crashes, wrong statuses |"
-    echo "|---|--:|---|--:|"
+    echo "| fault | times | files cut, crashes, wrong statuses |"
+    echo "|---|--:|--:|"
     sed -n 's/^injected: \(.*\) \([0-9]*\)$/\1|\2/p' "$fuzz/faults.txt" |
         while IFS='|' read -r kind times; do
-            echo "| $kind | $times | $(cat "$fuzz/faults.commit") | $(grep -c "^FAILED.*: $kind: call " "$fuzz/faults.txt") |"
+            echo "| $kind | $times | $(grep -c "^FAILED.*: $kind: call " "$fuzz/faults.txt") |"
         done
 }
 
@@ -132,15 +114,14 @@ soak_section() {
     echo "buffer or texture may stay, and resident memory may not grow from one to the next: the slope after"
     echo "the first fifth, by least squares, is at most 8 KiB a frame and 1 MiB an opening."
     echo
-    echo "| what | commit | slope of memory, KiB each |"
-    echo "|---|---|--:|"
-    sed -n "s/^soaked: \(.*\), memory \([-+.0-9]*\) KiB.*/| \1 | $(cat "$fuzz/soak.commit") | \2 |/p" "$fuzz/soak.txt"
+    echo "| what | slope of memory, KiB each |"
+    echo "|---|--:|"
+    sed -n 's/^soaked: \(.*\), memory \([-+.0-9]*\) KiB.*/| \1 | \2 |/p' "$fuzz/soak.txt"
 }
 
 threads_section() {
     echo "## Threads"
     echo
-    at_commit threads
     echo "Under ThreadSanitizer: $(sed -n 's/^threads: //p' "$fuzz/threads.txt")," \
         "$(grep -c ^FAILED "$fuzz/threads.txt") with a race."
 }
@@ -148,7 +129,6 @@ threads_section() {
 sanitized_section() {
     echo "## The whole program under sanitizers"
     echo
-    at_commit sanitized
     echo "Under AddressSanitizer and UndefinedBehaviorSanitizer, without leaks, which the unit tests"
     echo "look for, $(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$fuzz/sanitized.txt") failed of" \
         "$(sed -nE 's/.*Test +#[0-9]+: e2e\/([a-z_]+) .*(Passed|\*\*\*[FTE]).*/`\1`/p' "$fuzz/sanitized.txt" |
@@ -159,27 +139,8 @@ sanitized_section() {
 valgrind_section() {
     echo "## Uninitialized memory"
     echo
-    at_commit valgrind
     echo "The stored inputs of every reader and the unit tests under valgrind:"
     echo "$(sed -n 's/^valgrind: //p' "$fuzz/valgrind.txt"), $(grep -c ^FAILED "$fuzz/valgrind.txt") of them with an error."
-}
-
-# The commits of all sections; of those that are kept, what the page has.
-all_commits() {
-    { cat "$fuzz"/*.commit
-      [ "$(ls "$fuzz"/*.commit | wc -l)" -eq 6 ] ||
-          sed -n 's/^- Commit: \([^;]*\).*/\1/p' "$page" | tr -d ' ' | tr , '\n'
-    } | sort -u | paste -sd, | sed 's/,/, /g'
-}
-
-# section STEP HEADING: of what lies in FUZZ_DIR, else as the page has it.
-section() {
-    if [ -s "$fuzz/$1.commit" ]; then
-        "$1_section"
-        echo
-    else
-        awk -v heading="## $2" '/^## / { inside = $0 == heading } inside' "$page"
-    fi
 }
 
 device() {
@@ -189,31 +150,27 @@ device() {
 for step in "$@"; do
     run_step "$step"
 done
+missing=()
+for step in "${steps[@]}"; do
+    [ "$(cat "$fuzz/$step.commit" 2>/dev/null)" = "$commit" ] || missing+=("$step")
+done
+[ ${#missing[@]} -eq 0 ] || { echo "no page: not run at $commit: ${missing[*]}"; exit $status; }
 {
     cat <<END
 # Robustness: what was tried, and what failed
 
-- Commit: $(all_commits); each section names its own
+- Commit: $commit
 - Scenes: stored inputs of \`tests/fuzz\`; tiny synthetic scenes
 - Device: $(device)
 - Date: $(date -u +%F)
-- Made by: \`tests/stability/report.sh BUILD [STEP]..\`
+- Made by: \`tests/stability/report.sh BUILD\`
 
 SECURITY.md says what Oriel promises; the inputs and checks below are in \`tests/fuzz\` and \`tests/stability\`.
-
 END
-    section fuzz "Inputs tried"
-    section faults "Faults injected"
-    section soak "Soaked"
-    section threads "Threads"
-    section sanitized "The whole program under sanitizers"
-    section valgrind "Uninitialized memory"
-    echo "## Found, mended, and kept as tests"
-    echo
-    echo "| what was wrong | test |"
-    echo "|---|---|"
-    awk -F'|' '{ gsub(/, /, "`, `", $2); printf "| %s | `%s` |\n", $1, $2 }' \
-        "$source/tests/stability/found.txt"
+    for step in "${steps[@]}"; do
+        echo
+        "${step}_section"
+    done
 } >"$page.part"
 mv "$page.part" "$page"
 echo "$page"
