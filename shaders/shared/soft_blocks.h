@@ -19,9 +19,8 @@
 #define ORL_SOFT_SHARE_VEC4S 3
 // Side of the tiles that share a list of splats, pixels.
 #define ORL_SOFT_TILE 4
-// Work groups: a side in pixels, and tiles.
-#define ORL_SOFT_BLEND_GROUP 8
-#define ORL_SOFT_BACKWARD_GROUP 64
+// Tiles of a work group.
+#define ORL_SOFT_TILE_GROUP 64
 
 #if defined(__STDC_VERSION__) || defined(BLOCK_SOFT)
 ORL_BLOCK(soft_block)

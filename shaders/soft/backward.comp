@@ -3,12 +3,10 @@
 // nothing is shared between them.
 #include "soft/tile.glsl"
 
-layout(local_size_x = ORL_SOFT_BACKWARD_GROUP) in;
+layout(local_size_x = ORL_SOFT_TILE_GROUP) in;
 layout(rgba32f, binding = 0) readonly uniform image2D blended;
 layout(rgba32f, binding = 1) readonly uniform image2D gradient; // of the loss by a pixel's colour
 layout(rgba32f, binding = 5) writeonly uniform imageBuffer shares; // ORL_SOFT_SHARE_VEC4S for each entry of the lists
-
-const int PIXELS = ORL_SOFT_TILE * ORL_SOFT_TILE;
 
 // What a splat gives to a pixel: its share, and gradient by the exponent of its Gaussian. change: gradient by the
 // pixel's colour; behind: what the splats that follow give to the loss's change.
@@ -25,14 +23,13 @@ vec2 take(seen_splat s, vec2 off, vec3 change, inout float passes, inout float b
 void main()
 {
     int tile = int(gl_GlobalInvocationID.x);
-    int tiles = tiles_across * ((view_size.y + ORL_SOFT_TILE - 1) / ORL_SOFT_TILE);
-    if (tile >= tiles)
+    if (tile >= tile_count())
         return;
-    ivec2 origin = ORL_SOFT_TILE * ivec2(tile % tiles_across, tile / tiles_across);
+    ivec2 origin = first_pixel(tile);
     vec3 change[PIXELS];
     float passes[PIXELS], behind[PIXELS];
     for (int i = 0; i < PIXELS; i++) {
-        ivec2 at = origin + ivec2(i % ORL_SOFT_TILE, i / ORL_SOFT_TILE);
+        ivec2 at = origin + pixel_of_tile(i);
         vec3 by_color = imageLoad(gradient, at).rgb; // 0 outside
         change[i] = by_color;
         behind[i] = dot(by_color, imageLoad(blended, at).rgb);
@@ -46,13 +43,13 @@ void main()
         vec2 second = vec2(0.0);
         vec3 color_sum = vec3(0.0);
         for (int i = 0; i < PIXELS; i++) {
-            vec2 at = off + vec2(i % ORL_SOFT_TILE, i / ORL_SOFT_TILE);
+            vec2 at = off + vec2(pixel_of_tile(i));
             vec2 given = take(s, at, change[i], passes[i], behind[i]);
             first += given.y * vec4(1.0, at, at.x * at.x);
             second += given.y * at.y * at;
             color_sum += given.x * change[i];
         }
-        int to = ORL_SOFT_SHARE_VEC4S * (k - tiles - 1);
+        int to = ORL_SOFT_SHARE_VEC4S * (k - tile_count() - 1);
         imageStore(shares, to, first);
         imageStore(shares, to + 1, vec4(second, 0.0, 0.0));
         imageStore(shares, to + 2, vec4(color_sum, 0.0));

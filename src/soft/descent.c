@@ -93,7 +93,7 @@ static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, c
                    [5] = {d->share_texels, 0, GL_WRITE_ONLY}, [6] = {r->seen, 0, GL_READ_ONLY},
                    [7] = {r->entries, 0, GL_READ_ONLY}},
         .groups = {orl_groups((size_t)block->tiles_across * orl_groups((size_t)block->view_size[1], ORL_SOFT_TILE),
-                              ORL_SOFT_BACKWARD_GROUP)},
+                              ORL_SOFT_TILE_GROUP)},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), .params = block, .params_size = sizeof *block,

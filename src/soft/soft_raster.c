@@ -87,6 +87,7 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     *block = block_of(raster, view);
     block->smooths = smooths;
     const int down = (int)orl_groups((size_t)view->camera.height, ORL_SOFT_TILE);
+    const size_t tiles = (size_t)block->tiles_across * (size_t)down;
     ORL_TRY(fit_target(gpu, raster, view->camera.width, view->camera.height));
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
@@ -99,15 +100,14 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
     ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, block->tiles_across, down,
                                 &raster->lists));
-    size_t bytes = ((size_t)block->tiles_across * (size_t)down + 1 + raster->lists.entries) * sizeof(int);
+    size_t bytes = (tiles + 1 + raster->lists.entries) * sizeof(int);
     ORL_TRY(orl_soft_buffer(gpu, "lists of soft splats", bytes, &raster->listed, GL_R32I, &raster->entries));
     orl_buf_write(raster->listed, 0, bytes, raster->lists.listed);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/blend.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
         .images = {{raster->blended, 0, GL_WRITE_ONLY}, [6] = {raster->seen, 0, GL_READ_ONLY},
                    [7] = {raster->entries, 0, GL_READ_ONLY}},
-        .groups = {orl_groups((size_t)view->camera.width, ORL_SOFT_BLEND_GROUP),
-                   orl_groups((size_t)view->camera.height, ORL_SOFT_BLEND_GROUP)},
+        .groups = {orl_groups(tiles, ORL_SOFT_TILE_GROUP)},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
     return ORL_OK;
 }
