@@ -21,12 +21,12 @@ float photo_surface_penalty(float penalty)
     return length(vec2(penalty, SURFACE_PENALTY));
 }
 
-// A photograph with this penalty, an angle of about 50 degrees, shows other sides of objects. It is
-// of no use where the depth is only estimated.
-const float GUESS_PENALTY_MAX = 0.9;
+// A photograph with this penalty, an angle of about 50 degrees, shows other sides of objects. Where the depth is
+// only estimated, it counts GUESS_FAR, so that it paints what no other photograph shows.
+const float GUESS_PENALTY_MAX = 0.9, GUESS_FAR = 0.1;
 
-// Falls from 1 to 0 towards GUESS_PENALTY_MAX.
+// Falls from 1 to GUESS_FAR towards GUESS_PENALTY_MAX.
 float photo_beside(float penalty)
 {
-    return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MAX), 0.0, 1.0);
+    return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MAX), GUESS_FAR, 1.0);
 }
