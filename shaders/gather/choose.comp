@@ -1,6 +1,5 @@
 // Lists, for each tile of the screen, the photographs that can paint it best, so that the cost of a
 // pixel does not grow with the number of photographs.
-// AGAIN: tiles without estimated depth have their lists already.
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/candidates.glsl"
@@ -42,13 +41,7 @@ void main()
         best[c] = NOT_SEEN;
         index[c] = -1;
     }
-    int i = 0, count = photo_count;
-#ifdef AGAIN
-    float again = 0.0;
-    for (int s = 0; s < ACROSS * ACROSS; s++)
-        again += guess[s];
-    count = again > 0.0 ? count : 0;
-#endif
+    int i = 0;
     do { // the condition comes last: see tiled.comp
         float least = NOT_SEEN, seen = 0.0;
         photo source = photo_at(i);
@@ -56,11 +49,7 @@ void main()
             candidate_sample(source, points[s], guess[s], least, seen);
         candidate_insert(candidate_penalty(least, seen), i, best, index);
         i++;
-    } while (i < count);
-#ifdef AGAIN
-    if (again == 0.0)
-        return;
-#endif
+    } while (i < photo_count);
     for (int c = 0; c < CANDIDATES; c++)
         chosen[(tile.y * row + tile.x) * CANDIDATES + c] = index[c];
 }

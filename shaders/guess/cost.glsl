@@ -10,7 +10,7 @@
 #include "guess/planes.glsl"
 
 const int AT_ONCE = 4; // planes for which the parameters of a photograph are loaded once
-const int ASKED = 4;   // photographs of a tile, at most: its worst ones say no more of the depth
+const int ASKED = 3;   // photographs of a tile, at most: its worst ones say no more of the depth
 // Cost of photographs that differ, at most, and at which difference in square roots of light. It is
 // less than the cost of being seen past: photographs that show the sky or a black cloth agree at any
 // depth, and those that show different things at one depth do not say which depth is right.

@@ -313,8 +313,8 @@ export class Renderer {
         return photos;
     }
 
-    // Moves guesses to where photographs do not see past them, as src/render/paint/guess.c does, and lists the
-    // photographs of the tiles again. values: of the gather, which then have the depth that is moved
+    // Moves guesses to where photographs do not see past them, as src/render/paint/guess.c does.
+    // values: of the gather, which then have the depth that is moved
     moveGuesses(values)
     {
         const {device, programs, frame: f} = this;
@@ -324,7 +324,6 @@ export class Renderer {
         device.pass(programs.guessApply(), f.moved, {...values, picked: f.picked.textures[0]});
         this.depth = f.moved;
         values.view_depth = f.moved.textures[0];
-        device.pass(programs.choose, f.tiles, values);
     }
 
     compose(pointsOnly)

@@ -114,9 +114,5 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     smooth(frame, width, height, &d);
     run(frame, "guess/pick.comp", width, height, &d);
     run(frame, "guess/apply.comp", width, height, &d);
-    d = *choice;
-    d.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
-                             orl_frame_rests(frame) ? "RESTS 1\nAGAIN" : "AGAIN");
-    orl_gpu_dispatch(frame->gpu, &d);
     orl_pass_end(frame->gpu);
 }
