@@ -14,7 +14,7 @@ enum {
 };
 static const double GAIN_DB = 0.1; // a change must bring so much
 // What is best differs most from scene to scene for these; oriel tune moves others as well.
-static char *const KEYS[] = {"sharpness", "depth_tolerance", "guess_depths"};
+static char *const KEYS[] = {"sharpness", "depth_tolerance"};
 
 static int size_divide(const struct orl_scene *scene)
 {

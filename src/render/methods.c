@@ -26,7 +26,7 @@
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \
-    , .front_layer = 0.01f, .min_support = 8, .antialias = ORL_ANTIALIAS_ON
+    , .front_layer = 0.01f, .min_support = 8, .guess_depths = 16, .antialias = ORL_ANTIALIAS_ON
 
 static const struct orl_combine combine_top = {"top", .sweeps = 2, .states = 2};
 static const struct orl_combine combine_sigma = {"sigma", .sweeps = 2, .states = 2};
