@@ -83,7 +83,8 @@ int command_main(const struct command *command, int argc, const char *const *arg
     if (result == ORL_OK) {
         const struct orl_option_set sets[] = {
             {command->rows(), options}, {common_option_rows(), &common}, {0}};
-        memcpy(options, command->presets, command->size);
+        if (command->size > 0)
+            memcpy(options, command->presets, command->size);
         result = orl_arguments_parse(&log, command->name, sets, argc, argv, command->inputs_max,
                                    inputs, &count);
         if (result == ORL_OK && common.help)
