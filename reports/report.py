@@ -88,7 +88,8 @@ class Report:
         walks = self.call(*words, *walk)
         rows, walks = as_list(rows), as_list(walks) if walks else []
         for at, row in enumerate(rows):
-            row["flicker"] = walks[at]["all"]["block_mean"] if at < len(walks) else None
+            # 0: no block shows one surface in both frames.
+            row["flicker"] = walks[at]["all"]["block_mean"] or None if at < len(walks) else None
             row["frame_ms"], row["cpu_ms"] = row["mean"]["render_ms"], row["mean"]["cpu_ms"]
             row["device_bytes_by_owner"] = row["device_bytes"]
             row["device_bytes"] = sum(row["device_bytes"].values())
