@@ -129,11 +129,11 @@ threads_section() {
 sanitized_section() {
     echo "## The whole program under sanitizers"
     echo
-    echo "Under AddressSanitizer and UndefinedBehaviorSanitizer, without leaks, which the unit tests"
-    echo "look for, $(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$fuzz/sanitized.txt") failed of" \
-        "$(sed -nE 's/.*Test +#[0-9]+: e2e\/([a-z_]+) .*(Passed|\*\*\*[FTE]).*/`\1`/p' "$fuzz/sanitized.txt" |
-            sort -u | paste -sd, | sed 's/,/, /g' | fold -sw 96)" \
-        "(of $(find "$source/tests/e2e" -name '*.sh' | wc -l) scripts)."
+    echo "Under AddressSanitizer and UndefinedBehaviorSanitizer, without leaks, which the unit tests look"
+    echo "for, $(grep -cE 'e2e/.*Passed' "$fuzz/sanitized.txt") scripts of \`tests/e2e\` pass. \`untrusted\` limits the address space, and"
+    echo "\`stress\` preloads a library into Python: neither can run so. Besides these two failed:" \
+        "$(sed -nE 's/.*Test +#[0-9]+: e2e\/([a-z_]+) .*\*\*\*[FTE].*/`\1`/p' "$fuzz/sanitized.txt" |
+            grep -vE 'untrusted|stress' | paste -sd, | sed 's/,/, /g; s/^$/none/')."
 }
 
 valgrind_section() {
