@@ -116,7 +116,9 @@ static void photographs_that_see_the_wall_have_no_say(void **state)
 {
     (void)state;
     static const double eyes[4] = {-2.6, -0.4, 0.4, 2.6};
-    check_better(error_with(eyes, 0, BEHIND_Z), error_with(eyes, 16, BEHIND_Z));
+    double rim = error_with(eyes, 0, BEHIND_Z), tried = error_with(eyes, 16, BEHIND_Z);
+    check_better(rim, tried);
+    assert_true(tried < 0.3 * rim);
 }
 
 // The lowest cells of the opening have no neighbours below. Those beside and above them tell that the
@@ -137,28 +139,6 @@ static void nothing_comes_before_the_background(void **state)
     print_message("mean error: depth of the rim %.4f, depths tried %.4f\n", rim, tried);
     assert_true(rim > 0.05);
     assert_float_equal(tried, rim, 0.1 * rim);
-}
-
-// Photographs are chosen once more for moved depths. Where there are surfaces alone the choice stays.
-static void surfaces_keep_their_photographs(void **state)
-{
-    (void)state;
-    struct fixture f;
-    setup_empty(&f, WALL_Z);
-    make_wall(&f.scene.points);
-    add_photo(&f, look_from(1.5, 0, 0, 2 * SIDE, FOCAL), red);
-    add_photo(&f, look_from(0.1, 0, 0, 2 * SIDE, FOCAL), green);
-    struct orl_render_params params = with_depths(16);
-    struct orl_frame moved = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
-    params.guess_depths = 0;
-    struct orl_frame rim = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
-    for (int y = 0; y < 16; y++)
-        for (int x = 0; x < SIDE; x++)
-            for (int c = 0; c < 3; c++)
-                assert_float_equal(color_at(&moved, x, y)[c], color_at(&rim, x, y)[c], 0);
-    orl_frame_finish(&moved);
-    orl_frame_finish(&rim);
-    teardown(&f);
 }
 
 // A near plate in the middle and a far wall on the right, beside and above which a photograph from
@@ -322,7 +302,6 @@ int main(void)
         cmocka_unit_test(photographs_that_see_the_wall_have_no_say),
         cmocka_unit_test(cells_at_the_rim_learn_from_all_sides),
         cmocka_unit_test(nothing_comes_before_the_background),
-        cmocka_unit_test(surfaces_keep_their_photographs),
         cmocka_unit_test(guesses_change_without_a_line),
         cmocka_unit_test(guesses_continue_slanting_surfaces),
         cmocka_unit_test(guesses_move_behind_what_photographs_see_past),
