@@ -148,7 +148,7 @@ void orl_tex_fill(struct orl_tex *tex, uint32_t word);
 enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
                                     struct orl_tex **out) ORL_CHECK_RESULT;
 // Fills the coarser levels of one layer (0 without layers) from its level 0, which shaders may have
-// written. Samplers see all levels from then on.
+// written. GL_RGBA8 counts as sRGB, whose means are those of light. Samplers see all levels from then on.
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
 // Whether samples between two levels mix both, as a linear texture does when it is made. Without, they
 // read the nearer one: software renderers pay for the choice even where levels are whole.

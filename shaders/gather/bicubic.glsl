@@ -10,6 +10,7 @@
 // before, the variance of a box of the pixel's width: it is (width^2 - 1) / 12, and 1 / 6 is that of
 // a bilinear sample, in the mean over positions. A bicubic sample of the level that is as coarse as
 // the view would blur what is near the limit of the view's resolution.
+#include "gather/stored.glsl"
 
 // From this width on, in pixels, the variance is that of a bilinear sample or more.
 const float AREA_FROM = 1.73205;
@@ -25,8 +26,8 @@ vec4 bicubic(vec2 pixel, float slot, vec2 size, float mip, out vec4 plain)
     vec2 one = covers_more ? vec2(apart) : vec2(1.0, 0.0), other = covers_more ? vec2(apart, -apart) : vec2(0.0, 1.0);
     vec2 blur = covers_more ? vec2(0.0) : 0.5 * f * (1.0 - f);
     vec4 middle = photo_texel(at * texel, slot, lod);
-    vec4 ones = photo_texel((at - one) * texel, slot, lod) + photo_texel((at + one) * texel, slot, lod);
-    vec4 others = photo_texel((at - other) * texel, slot, lod) + photo_texel((at + other) * texel, slot, lod);
-    plain = covers_more ? 0.25 * (ones + others) : middle;
-    return max(plain - blur.x * (ones - 2.0 * middle) - blur.y * (others - 2.0 * middle), 0.0);
+    vec4 left = photo_texel((at - one) * texel, slot, lod), right = photo_texel((at + one) * texel, slot, lod);
+    vec4 up = photo_texel((at - other) * texel, slot, lod), down = photo_texel((at + other) * texel, slot, lod);
+    plain = covers_more ? stored_mean(left, right, up, down) : middle;
+    return max(plain - blur.x * (left + right - 2.0 * middle) - blur.y * (up + down - 2.0 * middle), 0.0);
 }

@@ -31,8 +31,8 @@ struct Point {
     bool guessed; // its depth is the estimated background depth
 };
 
-// Mipmapped. Either sRGB, which reads as linear light, or radiance: linear exposure * confidence *
-// ORL_RADIANCE_SCALE, with the confidence weight in alpha, so that clipped pixels (confidence near
+// Mipmapped. Either sRGB, decoded after the filter (gather/sample/srgb.glsl), or radiance: linear exposure *
+// confidence * ORL_RADIANCE_SCALE, with the confidence weight in alpha, so that clipped pixels (confidence near
 // 0) do not affect filtered neighbours.
 layout(binding = 0) uniform sampler2DArray photo_color;
 layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: estimated in a hole, 0: none
@@ -40,8 +40,6 @@ layout(binding = 1) uniform sampler2DArray photo_depth; // z; < 0: estimated in 
 #ifdef CHROMA
 layout(binding = ORL_PHOTO_CHROMA) uniform sampler2DArray photo_chroma;
 #endif
-#include "shared/srgb.glsl" // not within the condition: a file is included once
-
 #include "gather/projection.glsl"
 
 // The photograph's own depth at the four texels around a pixel.
@@ -77,7 +75,7 @@ vec4 photo_complete(vec4 texel, vec2 pixel, float slot, float lod)
     // The inverse of src/gpu/compress.c (ITU-R BT.601).
     vec3 color = texel.r + vec3(1.402 * chroma.g, -0.344136 * chroma.r - 0.714136 * chroma.g,
                                 1.772 * chroma.r);
-    return vec4(srgb_decode(clamp(color, 0.0, 1.0)), texel.a);
+    return vec4(clamp(color, 0.0, 1.0), texel.a);
 #else
     return texel;
 #endif

@@ -53,7 +53,7 @@ void ask(photo source, bool listed, vec3 p, inout opinion o)
     // A texel of this level is as large as half a cell.
     float mip = photo_mip(source, z, p.z) + log2(0.5 * float(CELL));
     vec3 color = photo_bilinear(source, pixel, floor(min(mip, last_mip) + 0.5)).rgb;
-    color = sqrt(photo_aligned(source, pixel, color));
+    color = sqrt(photo_light(source, pixel, color));
     o.sum += vec4(color, 1.0) * counts;
     o.squares += dot(color, color) * counts;
     o.weights += counts * counts;

@@ -96,7 +96,7 @@ static size_t block_bytes(GLenum format)
     switch (format) {
     case GL_COMPRESSED_RG_RGTC2:
         return 16;
-    case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
+    case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
     case GL_COMPRESSED_RED_RGTC1:
         return 8;
     default:
@@ -108,10 +108,8 @@ bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
 {
     GLint supported = GL_FALSE;
     (void)gpu;
-    // RGTC is part of GL 4.5. S3TC is an extension, and GL_EXT_texture_sRGB adds its sRGB formats.
-    if (format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT &&
-        !(epoxy_has_gl_extension("GL_EXT_texture_compression_s3tc") &&
-          epoxy_has_gl_extension("GL_EXT_texture_sRGB")))
+    // RGTC is part of GL 4.5, S3TC is an extension.
+    if (format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT && !epoxy_has_gl_extension("GL_EXT_texture_compression_s3tc"))
         return false;
     glGetInternalformativ(GL_TEXTURE_2D_ARRAY, format, GL_INTERNALFORMAT_SUPPORTED, 1, &supported);
     return supported == GL_TRUE;
@@ -307,7 +305,7 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
         int from_width = level_side(source->width, level);
         int from_height = level_side(source->height, level);
         orl_tex_read(from, level, GL_RGBA, GL_UNSIGNED_BYTE, room, pixels);
-        if (p->format == GL_COMPRESSED_SRGB_S3TC_DXT1_EXT)
+        if (p->format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT)
             orl_bc1_encode(pixels, width, height, blocks);
         else if (p->format == GL_COMPRESSED_RED_RGTC1)
             orl_rgtc_encode_luma(pixels, width, height, blocks);
@@ -336,20 +334,22 @@ void orl_tex_make_mipmaps(struct orl_tex *tex, int layer)
                     GL_TEXTURE_UPDATE_BARRIER_BIT);
     if (tex->params.levels <= 1)
         return;
-    if (!tex->params.layers) {
+    const struct orl_tex_params *p = &tex->params;
+    bool colors = p->format == GL_RGBA8;
+    if (!p->layers && !colors) {
         glGenerateTextureMipmap(tex->id);
         return;
     }
-    // glGenerateTextureMipmap would redo every layer; with Mesa even on a view of one layer.
-    const struct orl_tex_params *p = &tex->params;
+    // glGenerateTextureMipmap would redo every layer; with Mesa even on a view of one layer. Of a format of sRGB it
+    // takes the means in linear light.
+    GLenum target = p->layers ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
     GLuint one;
     glCreateTextures(GL_TEXTURE_2D, 1, &one);
-    glTextureStorage2D(one, p->levels, p->format, p->width, p->height);
-    glCopyImageSubData(tex->id, GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, one, GL_TEXTURE_2D, 0, 0, 0, 0,
-                       p->width, p->height, 1);
+    glTextureStorage2D(one, p->levels, colors ? GL_SRGB8_ALPHA8 : p->format, p->width, p->height);
+    glCopyImageSubData(tex->id, target, 0, 0, 0, layer, one, GL_TEXTURE_2D, 0, 0, 0, 0, p->width, p->height, 1);
     glGenerateTextureMipmap(one);
     for (int level = 1; level < p->levels; level++)
-        glCopyImageSubData(one, GL_TEXTURE_2D, level, 0, 0, 0, tex->id, GL_TEXTURE_2D_ARRAY, level, 0,
-                           0, layer, level_side(p->width, level), level_side(p->height, level), 1);
+        glCopyImageSubData(one, GL_TEXTURE_2D, level, 0, 0, 0, tex->id, target, level, 0, 0, layer,
+                           level_side(p->width, level), level_side(p->height, level), 1);
     glDeleteTextures(1, &one);
 }

@@ -201,7 +201,12 @@ static void paint_line(struct fixture *f, bool across, int at, const uint8_t col
     repaint_photo(f, &image);
 }
 
-// The view's pixel lies a quarter of a pixel beside a line in each of three photographs. The Catmull-Rom filter, with
+static double light(double srgb)
+{
+    return (double)orl_srgb_decode((float)srgb);
+}
+
+// The view's pixel lies a tenth of a pixel beside a line in each of three photographs. The Catmull-Rom filter, with
 // which the best one is read, gives the line more weight there than the bilinear one. The others show as much more.
 static void check_detail(bool across)
 {
@@ -213,13 +218,13 @@ static void check_detail(bool across)
     double x[3], w[3], sum = 0;
     struct orl_render_params params = best();
     for (int i = 0; i < 3; i++) {
-        x[i] = -0.025 - 0.1 * i; // 0.1 on the wall is a pixel
+        x[i] = -0.01 - 0.1 * i; // 0.1 on the wall is a pixel
         add_photo(&f, look(across ? 0 : x[i], across ? x[i] : 0, 0), colors[i]);
         paint_line(&f, across, AT + i, colors[i]);
         w[i] = pow(penalty(0, x[0], AT, OTHER) / penalty(0, x[i], AT, OTHER), (double)params.sharpness);
         sum += w[i];
     }
-    const double sharp = 1 + 0.25 * 0.25 * (-2.5 + 1.5 * 0.25), shares[3] = {w[0], w[0] + w[1], w[0] + w[2]};
+    const double sharp = light(1 + 0.1 * 0.1 * (-2.5 + 1.5 * 0.1)), shares[3] = {w[0], w[0] + w[1], w[0] + w[2]};
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     for (int c = 0; c < 3; c++)
         assert_float_equal(color_at(&frame, across ? OTHER : AT, across ? AT : OTHER)[c], sharp * shares[c] / sum, 4e-3);
@@ -246,7 +251,7 @@ static void paint_edge(struct fixture *f, int from, const uint8_t color[3])
     repaint_photo(f, &image);
 }
 
-// A tenth of a pixel from the black side of an edge, the filters differ by a third of what is shown, and a quarter of it
+// A tenth of a pixel from the black side of an edge, the filters differ by half of what is shown, and a quarter of it
 // is lent. A best photograph that is far from the consensus lends next to nothing.
 static void little_of_an_edge_is_lent(void **state)
 {
@@ -264,7 +269,7 @@ static void little_of_an_edge_is_lent(void **state)
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     params.outliers = 0.01f;
     struct orl_frame robust = draw(gpu, &f, look(0, 0, 0), &params, 0);
-    const double sharp = 0.1 * (0.5 + 0.1 * (2 - 1.5 * 0.1)) + 0.01 * (-0.5 + 0.5 * 0.1);
+    const double sharp = light(0.1 * (0.5 + 0.1 * (2 - 1.5 * 0.1)) + 0.01 * (-0.5 + 0.5 * 0.1));
     const double other = 2 * pow(penalty(0, -0.01, AT, 26) / penalty(0, -0.4, AT, 26), (double)params.sharpness);
     assert_float_equal(color_at(&frame, AT, 26)[0], (sharp + 0.75 * other) / (1 + other), 4e-3);
     const double votes = 2 * sqrt(other / 2), mean = (sqrt(sharp) + votes) / (1 + votes);
@@ -287,9 +292,17 @@ static void add_fine_photo(struct fixture *f, double finer)
     paint_line(f, false, LINE, blue);
 }
 
-// At the line, in the level of pixels that are twice as large: the line is half of such a pixel, whose
-// centre is a quarter of it away. In the next level it is a quarter of a pixel, and the centre an eighth away.
-static const double line_of_two = 0.75 / 2, line_of_four = 0.875 / 4;
+// sRGB at the line, in the level of pixels that are twice as large: the line is half of the light of such a pixel, whose
+// centre is a quarter of it away. In the next level it is a quarter, and the centre an eighth away.
+static double line_of_two(void)
+{
+    return 0.75 * (double)orl_srgb_encode(1 / 2.0f);
+}
+
+static double line_of_four(void)
+{
+    return 0.875 * (double)orl_srgb_encode(1 / 4.0f);
+}
 
 // In a view that is coarser than the photographs the second best is read from the level of which one sample is
 // about as wide as a pixel of the view, and brought to the scene's exposure as the best is.
@@ -306,7 +319,7 @@ static void the_second_is_read_from_one_level(void **state)
     struct orl_render_params params = best();
     params.alignment = ORL_ALIGNMENT_ON;
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
-    double c = line_of_two, aligned = 0.5 * c / (1 - 0.5 * c * c * c); // see srgb.glsl
+    double c = light(line_of_two()), aligned = 0.5 * c / (1 - 0.5 * c * c * c); // see srgb.glsl
     assert_float_equal(color_at(&frame, LINE_AT, 24)[2], aligned / 2, 2e-3);
     orl_frame_finish(&frame);
     teardown(&f);
@@ -324,7 +337,7 @@ static void an_area_lends_nothing(void **state)
     add_photo(&f, view, white);
     struct orl_render_params params = best();
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
-    const double mean = 1 - sqrt((2 * 2 - 1) / 12.0 - 1 / 6.0);
+    const double mean = light(1 - sqrt((2 * 2 - 1) / 12.0 - 1 / 6.0));
     assert_float_equal(color_at(&frame, LINE_AT, 24)[2], (mean + 1) / 2, 4e-3);
     orl_frame_finish(&frame);
     teardown(&f);
@@ -340,7 +353,7 @@ static void the_bilinear_filter_mixes_levels(void **state)
     struct orl_render_params params = best();
     params.sampling = ORL_SAMPLING_BILINEAR;
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
-    assert_float_equal(color_at(&frame, LINE_AT, 24)[2], (line_of_two + line_of_four) / 2, 0.01);
+    assert_float_equal(color_at(&frame, LINE_AT, 24)[2], light((line_of_two() + line_of_four()) / 2), 0.01);
     orl_frame_finish(&frame);
     teardown(&f);
 }

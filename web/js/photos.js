@@ -97,7 +97,7 @@ export class PhotoStore {
         this.height = largest(p => p.height);
         this.levels = 1 + Math.floor(Math.log2(Math.max(this.width, this.height)));
         const depthWidth = largest(p => p.depth.width), depthHeight = largest(p => p.depth.height);
-        this.format = radiance ? "RGBA16F" : "SRGB8_ALPHA8";
+        this.format = radiance ? "RGBA16F" : "RGBA8";
         const each = this.width * this.height * (radiance ? 8 : 4) * 4 / 3 + depthWidth * depthHeight * 2;
         const layers = gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS);
         this.slots = clamp(Math.floor(budgetBytes / each), 2, Math.min(photos.length, layers));
@@ -148,17 +148,24 @@ export class PhotoStore {
             this.device.write(shown, picture);
             this.device.makeLevels(shown);
             gl.colorMask(false, false, false, true);
-            for (let level = 0; level < this.levels; level++) {
-                gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
-                gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, this.color.id, level, photo.slot);
-                this.device.pass(this.programs.softKeep(), {fbo: this.fbo, width: Math.max(this.width >> level, 1),
-                                                            height: Math.max(this.height >> level, 1)}, {shown, level});
-            }
+            this.keepLevels(this.programs.keepLuma(), shown, photo.slot);
             gl.colorMask(true, true, true, true);
             this.device.release(shown);
             photo.hasSoft = true;
         }
         picture.close();
+    }
+
+    // Draws all levels of a texture into a photograph's layer.
+    keepLevels(program, shown, slot)
+    {
+        const gl = this.device.gl;
+        for (let level = 0; level < this.levels; level++) {
+            gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
+            gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, this.color.id, level, slot);
+            this.device.pass(program, {fbo: this.fbo, width: Math.max(this.width >> level, 1),
+                                       height: Math.max(this.height >> level, 1)}, {shown, level});
+        }
     }
 
     // Another time step of the photograph, whose depth is told by `entry` of the manifest. It stays where it is.
@@ -173,23 +180,18 @@ export class PhotoStore {
         }
     }
 
-    // Mip levels are made in a texture of its own: of the array they would be made for all layers.
+    // Mip levels are made in a texture of its own: of the array they would be made for all layers. Those of sRGB are
+    // the means of light.
     writeColor(picture, slot)
     {
-        const gl = this.device.gl;
-        const one = this.device.texture(this.format, this.width, this.height, {levels: this.levels});
+        const one = this.device.texture(this.radiance ? this.format : "SRGB8_ALPHA8", this.width, this.height,
+                                        {levels: this.levels});
         if (this.radiance)
             this.unpackRadiance(picture, one);
         else
             this.device.write(one, picture);
         this.device.makeLevels(one);
-        gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
-        gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.color.id);
-        for (let level = 0; level < this.levels; level++) {
-            const w = Math.max(this.width >> level, 1), h = Math.max(this.height >> level, 1);
-            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, one.id, level);
-            gl.copyTexSubImage3D(gl.TEXTURE_2D_ARRAY, level, 0, 0, slot, 0, 0, w, h);
-        }
+        this.keepLevels(this.radiance ? this.programs.keep() : this.programs.keepSrgb(), one, slot);
         this.device.release(one);
     }
 

@@ -20,8 +20,8 @@ function makePrograms(device, sources, manifest, planes)
         let made = null;
         return () => made ||= device.program(sources, vertex, file, defines);
     };
-    const asks = {TILE, ...(manifest.backdrop === "rests" && {RESTS: 1})};
-    const tries = {TILE, PLANES: planes, TEXELS: costTexels(planes)};
+    const reads = manifest.radiance && {RADIANCE: 1}, asks = {TILE, ...reads, ...(manifest.backdrop === "rests" && {RESTS: 1})};
+    const tries = {TILE, ...reads, PLANES: planes, TEXELS: costTexels(planes)};
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
@@ -34,7 +34,8 @@ function makePrograms(device, sources, manifest, planes)
         seedColor: screen("seed_color.frag"), compose: screen("compose.frag"),
         show: screen("show.frag", {FLIP: 1}), capture: late("show.frag"), radianceUnpack: late("radiance_unpack.frag"),
         gatherSharp: late("gather.frag", {...asks, BICUBIC: 1, ...(manifest.soft && {SOFT: 1})}),
-        soft: late("soft.frag", {}, "soft.vert"), softKeep: late("soft_keep.frag"),
+        soft: late("soft.frag", {}, "soft.vert"), keep: late("keep.frag"),
+        keepSrgb: late("keep.frag", {SRGB: 1}), keepLuma: late("keep.frag", {LUMA: 1}),
         softCompare: late("soft_compare.frag"), softMix: late("soft_mix.frag"),
         guessCost: late("guess_cost.frag", tries), guessPick: late("guess_pick.frag", tries),
         guessApply: late("guess_apply.frag"),

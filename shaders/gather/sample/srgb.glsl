@@ -1,5 +1,6 @@
 // Samples photographs as linear light, brought to the scene's exposure where photographs are
-// aligned. BICUBIC: with a Catmull-Rom filter, else bilinear.
+// aligned. BICUBIC: with a Catmull-Rom filter, else bilinear. Filters take sRGB as it is stored: a bright pixel beside
+// dark ones spreads less than in linear light.
 #include "gather/photo.glsl"
 
 // Brings linear colour to the scene's exposure and white balance and undoes the vignetting. The
@@ -17,6 +18,12 @@ vec3 photo_aligned(photo source, vec2 pixel, vec3 color)
     return gain * color / (1.0 + c * (more - third + third * c * c));
 }
 
+// The aligned light of sRGB as it is stored.
+vec3 photo_light(photo source, vec2 pixel, vec3 stored)
+{
+    return photo_aligned(source, pixel, stored_light(stored));
+}
+
 // Colour, and w of photo_texel.
 vec4 photo_filtered(photo source, vec2 pixel, float mip)
 {
@@ -31,7 +38,7 @@ vec4 photo_filtered(photo source, vec2 pixel, float mip)
     level += clamp(5.0 * (mip - level) - 3.5, 0.0, 1.0);
     vec4 texel = photo_bilinear(source, pixel, level);
 #endif
-    return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
+    return vec4(photo_light(source, pixel, texel.rgb), texel.a);
 }
 
 // Colour, and full confidence.
@@ -52,9 +59,12 @@ vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
 #ifdef BICUBIC
     if (k > 0) { // the level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM
         vec4 texel = photo_bilinear(source, pixel, floor(max(mip - 0.3, 0.0)));
-        return vec4(photo_aligned(source, pixel, texel.rgb), texel.a);
+        return vec4(photo_light(source, pixel, texel.rgb), texel.a);
     }
-    vec4 plain, sharp = photo_bicubic(source, pixel, mip, plain), most = DETAIL_MAX * plain;
+    vec4 plain, sharp = photo_bicubic(source, pixel, mip, plain);
+    plain.rgb = stored_light(plain.rgb);
+    sharp.rgb = stored_light(sharp.rgb);
+    vec4 most = DETAIL_MAX * plain;
     detail = clamp(sharp - plain, -most, most) / max(plain, 1e-9);
     return vec4(photo_aligned(source, pixel, sharp.rgb), sharp.a);
 #else

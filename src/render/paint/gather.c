@@ -166,8 +166,9 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
 struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
                                  const struct orl_slot *slots, const char *defines)
 {
-    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s", frame->paint->gather.options,
+    char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s%s", frame->paint->gather.options,
                             frame->reads_chroma ? "CHROMA 1\n" : "",
+                            frame->radiance ? "RADIANCE 1\n" : "",
                             frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
                             defines ? defines : "");
     struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;

@@ -100,13 +100,13 @@ static size_t color_bytes(const struct photos *photos, const struct slot_size *s
 
 static bool is_compressed(const struct photos *photos)
 {
-    return photos->format != GL_SRGB8_ALPHA8 && photos->format != GL_RGBA16F;
+    return photos->format != GL_RGBA8 && photos->format != GL_RGBA16F;
 }
 
 // The part of the budget that is available for slots.
 static size_t slot_budget(const struct photos *photos, const struct slot_size *size, size_t budget)
 {
-    struct photos plain = {.format = GL_SRGB8_ALPHA8};
+    struct photos plain = {.format = GL_RGBA8};
     size_t loading = is_compressed(photos) ? color_bytes(&plain, size) : 0;
     return budget > loading ? budget - loading : 1;
 }
@@ -114,7 +114,7 @@ static size_t slot_budget(const struct photos *photos, const struct slot_size *s
 // Of everything that a method may ask for.
 static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
 {
-    struct photos byte = {.format = GL_R8}, background = {.format = GL_SRGB8_ALPHA8};
+    struct photos byte = {.format = GL_R8}, background = {.format = GL_RGBA8};
     return color_bytes(photos, size) +
            (size_t)size->depth_width * (size_t)size->depth_height *
                (photos->scene->defaults.depth_half ? 2 : 4) +
@@ -383,7 +383,7 @@ static enum orl_result make_loading(struct orl_gpu *gpu, struct photos *photos)
     }
     struct orl_tex_params params = photos->color_params;
     params.layers = 0;
-    params.format = GL_SRGB8_ALPHA8;
+    params.format = GL_RGBA8;
     params.tag = "photograph being loaded";
     return orl_tex_create(gpu, &params, &photos->loading);
 }
@@ -564,7 +564,7 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     struct photo_state *state = &photos->states[photo];
     struct orl_tex_params params = photos->color_params;
     struct orl_image whole = {0}, image = {0};
-    params.format = GL_SRGB8_ALPHA8;
+    params.format = photos->radiance ? GL_SRGB8_ALPHA8 : GL_RGBA8; // radiance is read without decoding
     params.tag = "backgrounds";
     give_slot(photos, state);
     if (orl_photos_has_background(photos, photo))

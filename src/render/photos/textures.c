@@ -28,7 +28,7 @@ enum orl_result orl_textures_choose(const struct orl_log *log, const struct orl_
 static GLenum compressed_format(enum orl_textures textures)
 {
     return textures == ORL_TEXTURES_YCC   ? GL_COMPRESSED_RED_RGTC1
-           : textures == ORL_TEXTURES_BC1 ? GL_COMPRESSED_SRGB_S3TC_DXT1_EXT
+           : textures == ORL_TEXTURES_BC1 ? GL_COMPRESSED_RGB_S3TC_DXT1_EXT
                                           : 0;
 }
 
@@ -42,7 +42,7 @@ GLenum orl_textures_format(const struct orl_gpu *gpu, bool radiance, enum orl_te
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     if (textures == ORL_TEXTURES_AUTO || textures == ORL_TEXTURES_FULL)
-        return radiance ? GL_RGBA16F : GL_SRGB8_ALPHA8;
+        return radiance ? GL_RGBA16F : GL_RGBA8;
     GLenum format = compressed_format(textures);
     if (radiance)
         orl_logf(log, ORL_LOG_WARNING, "photographs as radiance are kept uncompressed");
@@ -51,5 +51,5 @@ GLenum orl_textures_format(const struct orl_gpu *gpu, bool radiance, enum orl_te
     else
         orl_logf(log, ORL_LOG_WARNING, "this device has no %s textures: photographs are kept "
                  "uncompressed", orl_textures_names[textures]);
-    return radiance ? GL_RGBA16F : GL_SRGB8_ALPHA8;
+    return radiance ? GL_RGBA16F : GL_RGBA8;
 }

@@ -1,7 +1,7 @@
 // Asking a photograph about a surface point: what shaders/gather/photo.glsl is for compute, for
 // WebGL 2. The files of shaders/gather that stand on it are the same for both.
 uniform sampler2D photo_rows; // a row of 9 texels for each photograph of the frame
-// Mipmapped, sRGB: reads are linear light. a: what soft splats show there, luma, once it is loaded.
+// Mipmapped: sRGB, decoded after the filter, or radiance. a: what soft splats show there, luma, once it is loaded.
 uniform mediump sampler2DArray photo_color;
 uniform sampler2DArray photo_depth; // parts of its nearest depth; < 0: guessed, 0: none
 uniform vec4 view_focal;
