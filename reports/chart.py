@@ -10,8 +10,7 @@ import report
 from report import FIGURES, Failure, fixed, mean, spread
 
 # What trades accuracy for speed where a method chooses a few photographs for each pixel.
-SETTINGS = ["photos_per_pixel=1", "photos_per_pixel=2", "photos_per_pixel=4", "candidates=2",
-            "candidates=3", "candidates=4", "candidates=8", "sampling=bilinear"]
+SETTINGS = [*(f"photos_per_pixel={count}" for count in (1, 2, 3, 4)), "sampling=bilinear"]
 RENDERERS = {"photographs at 1/2": ["--photo-divide", 2], "photographs at 1/4": ["--photo-divide", 4],
              "textures ycc": ["--textures", "ycc"],
              "textures bc1": ["--textures", "bc1"]}
@@ -23,7 +22,7 @@ def settings_of(run, values):
     key, _, varied = run.options.get("vary", "").partition("=")
     found = {f"{key}={value}": ["--set", f"{key}={value}"]
              for value in varied.split(",") if varied and key in values}
-    if run.options.get("quick") or "candidates" not in values or \
+    if run.options.get("quick") or "photos_per_pixel" not in values or \
             float(values.get("reconstructions", 1)) > 1:
         return found
     for setting in SETTINGS:

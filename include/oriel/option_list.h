@@ -57,10 +57,7 @@
     NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
     NUMBER(photos_per_pixel, 4, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
-        "The most photographs that are blended into a pixel.") \
-    NUMBER(candidates, 5, 1, 8, "photographs", "paint=tiled", ORL_NO_TRIES, \
-        "How many photographs of its tile a pixel asks. Fewer are faster, and miss more " \
-        "behind occluders.") \
+        "The most photographs that are blended into a pixel, of one more that it asks.") \
     NUMBER(outliers, 0.3f, 0, 1, "square root of light", "combine=robust", ORL_NO_TRIES, \
         "A sample that differs from the consensus by this much counts half. With 0 there are " \
         "no outliers.") \

@@ -23,46 +23,50 @@ struct sight {
     float mip;
 };
 
-// The best photographs of a pixel in ascending order of penalty, and the next greater penalty.
+// The photographs that a pixel asks: the best one stands first, and the worst one, which is left out, last.
 struct ranking {
-    sight best[KEPT];
-    float next; // the limit of what is blended
+    sight of[KEPT + 1];
 };
 
 void clear(out ranking r)
 {
-    r.next = NOT_SEEN;
-    for (int k = 0; k < KEPT; k++)
-        r.best[k] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
+    for (int k = 0; k <= KEPT; k++)
+        r.of[k] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
 }
 
-// The code selects rather than branches, here and below: a branch costs a software renderer a mask
-// on every value that outlives it.
-void insert(sight s, inout ranking r)
+// Puts the better one first. The code selects rather than branches, here and below: a branch costs a software
+// renderer a mask on every value that outlives it.
+void order(inout sight a, inout sight b)
 {
-    for (int k = 0; k < KEPT; k++) {
-        bool better = s.penalty < r.best[k].penalty;
-        sight other = r.best[k];
-        r.best[k] = sight(better ? s.penalty : other.penalty, better ? s.index : other.index,
-                          better ? s.pixel : other.pixel, better ? s.mip : other.mip);
-        s = sight(better ? other.penalty : s.penalty, better ? other.index : s.index,
-                  better ? other.pixel : s.pixel, better ? other.mip : s.mip);
-    }
-    r.next = min(r.next, s.penalty);
+    bool swap = b.penalty < a.penalty;
+    sight c = a;
+    a = sight(swap ? b.penalty : a.penalty, swap ? b.index : a.index, swap ? b.pixel : a.pixel, swap ? b.mip : a.mip);
+    b = sight(swap ? c.penalty : b.penalty, swap ? c.index : b.index, swap ? c.pixel : b.pixel, swap ? c.mip : b.mip);
+}
+
+// Takes the c-th photograph, from 0. After the last one the ranking is complete.
+void rank(sight s, int c, inout ranking r)
+{
+    r.of[c] = s;
+    if (c > 0)
+        order(r.of[0], r.of[c]);
+    if (c == KEPT)
+        for (int k = 1; k < KEPT; k++)
+            order(r.of[k], r.of[KEPT]);
 }
 
 // Weight of the k-th photograph.
 float sight_weight(ranking r, int k)
 {
-    sight one = r.best[k];
+    sight one = r.of[k];
+    float next = r.of[KEPT].penalty;
     // The weight is full until the penalty comes near that of the first photograph left out. A
     // trace of weight remains at equality, so that photographs that tie for the last place paint.
-    float fade = r.next == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / r.next));
-    bool counts = one.penalty < NOT_SEEN && one.penalty <= r.next;
-    return counts ? pow(r.best[0].penalty / one.penalty, opt.sharpness) * fade : 0.0;
+    float fade = next == NOT_SEEN ? 1.0 : min(1.0, 4.0 * (1.00001 - one.penalty / next));
+    return one.penalty < NOT_SEEN ? pow(r.of[0].penalty / one.penalty, opt.sharpness) * fade : 0.0;
 }
 
-// What the photographs of a pixel show, best first, as photo_ranked reads it.
+// What the photographs of a pixel show, the best one first, as photo_ranked reads it.
 struct samples {
     vec4 shown[KEPT];
     float weight[KEPT];
@@ -91,7 +95,7 @@ vec4 blend(spot s, ranking r, samples from, out float luma, out float blur)
         kept = k == 0 ? share : kept;
     }
     apart.y = max(apart.y, 1e-30);
-    blur = guess_blur(s.p, r.best[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
+    blur = guess_blur(s.p, r.of[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
     vec4 shown = sum + kept * from.detail * (sum - kept * first * from.shown[0]);
     shown /= max(total, 1e-30);
     luma = shown.a;

@@ -30,5 +30,7 @@ sight consider(int i, photo source, spot s)
 #endif
     float sure = sees * photo_border(source, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > 1e-4;
-    return sight(paints ? penalty / sure : NOT_SEEN, i, pixel, photo_mip(source, z, s.p.z));
+    // What does not paint is read all the same, with the weight 0.
+    return sight(paints ? penalty / sure : NOT_SEEN, max(i, 0), paints ? pixel : vec2(0.0),
+                 paints ? photo_mip(source, z, s.p.z) : 0.0);
 }

@@ -32,10 +32,10 @@ float surface_penalty(float penalty)
 
 #include "gather/consider.glsl"
 
-// What the k-th photograph of a ranking shows. Every one is read: see insert.
+// What the k-th photograph of a ranking shows. Every one is read: see order.
 void look(ranking r, int k, inout samples to)
 {
-    sight one = r.best[k];
+    sight one = r.of[k];
     to.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, to.detail);
     to.weight[k] = sight_weight(r, k);
 }
@@ -59,22 +59,13 @@ void main()
         clear(rankings[k]);
     }
     ivec2 tile = corner / tile_side; // of all four pixels, since the tile's side is even
-    int list = (tile.y * tiles_across + tile.x) * CANDIDATES, c = 0;
-    int i = chosen[list];
-    // The condition comes last: with a condition at the beginning, a software renderer runs the
-    // loop's body once more before it ends.
-    do {
+    int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
+    for (int c = 0; c <= KEPT; c++) {
+        int i = chosen[list + c];
         photo source = photo_at(max(i, 0));
         for (int k = 0; k < 4; k++)
-            insert(consider(i, source, spots[k]), rankings[k]);
-        c++;
-        i = c < asked ? chosen[list + c] : -1;
-        // The loop ends when each pixel has its photographs and the penalty of the first one left out.
-        float left_out = 0.0;
-        for (int k = 0; k < 4; k++)
-            left_out = max(left_out, spots[k].p.z > 0.0 ? rankings[k].next : 0.0);
-        i = left_out < NOT_SEEN ? -1 : i;
-    } while (i >= 0);
+            rank(consider(i, source, spots[k]), c, rankings[k]);
+    }
     float lumas[4];
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt

@@ -20,7 +20,7 @@ float depth_at(ivec2 at)
 int photo_to_ask(ivec2 cell, int c)
 {
     ivec2 tile = cell * CELL / tile_side;
-    return c < asked ? chosen[(tile.y * tiles_across + tile.x) * CANDIDATES + c] : -1;
+    return chosen[(tile.y * tiles_across + tile.x) * CANDIDATES + c];
 }
 
 #include "guess/cost.glsl"

@@ -102,7 +102,6 @@ ORL_BLOCK(gather_block)
     IVEC2(view_size);    // pixels
     INT(photo_count);    // photographs of this dispatch
     INT(tiles_across);   // tiles in each row of the view
-    INT(asked);          // opt.candidates, rounded to a whole number
     FLOAT(last_mip);     // largest mip level
     FLOAT(border_px);    // pixels of the photographs as stored on the device; 0: they do not fade
     FLOAT(outlier_severity); // 1 / opt.outliers^2; 0: no outlier rejection
@@ -122,7 +121,7 @@ ORL_BLOCK(gather_block)
 #define ORL_BICUBIC 1 // value of opt.sampling
 
 // Selection of photographs per tile.
-#define CANDIDATES 8   // most photographs listed per tile
+#define CANDIDATES 5   // photographs listed per tile: one more than a pixel can blend
 // Estimated depth from photographs: lines of cells of a work group.
 #define GUESS_LINES 32
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel

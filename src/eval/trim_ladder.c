@@ -31,8 +31,7 @@ static const double ssim_per_db = 0.1;
 // Options whose cheaper values save time.
 static const char *const cheaper[] = {
     "sampling=bilinear", "antialias=off", "median=off", "guess_blur=0",
-    "outliers=0", "min_support=0", "photos_per_pixel=2", "candidates=4",
-    "candidates=3"};
+    "outliers=0", "min_support=0", "photos_per_pixel=2"};
 
 // `max`: the last level; of options: none. `share`: of what is left of the tolerances.
 struct rung {

@@ -27,7 +27,7 @@ static void name_photographs(const struct orl_render_params *p, char text[64])
     int nearest = (int)p->nearest;
     if (p->paint == &orl_paint_tiled)
         snprintf(text, 64, "%d photographs, of %d of its tile", (int)p->photos_per_pixel,
-                 (int)p->candidates);
+                 (int)p->photos_per_pixel + 1);
     else if (p->select == &orl_select_nearest)
         snprintf(text, 64, "%d photographs", nearest);
     else if (p->select == &orl_select_princ)

@@ -113,7 +113,6 @@ struct orl_render_params orl_walk_moving_params(const struct orl_render_params *
     moving.sampling = fast->sampling;
     moving.antialias = fast->antialias;
     moving.guess_depths = fminf(params->guess_depths, fast->guess_depths);
-    moving.candidates = fminf(params->candidates, fast->candidates);
     moving.reconstructions = 1;
     moving.photos_per_pixel = fminf(params->photos_per_pixel, fast->photos_per_pixel);
     moving.soft = 0;

@@ -45,7 +45,7 @@ runs 2 "${parts[@]}" --part 3/2
 
 # A paper's method once more on the proxy of oriel; settings of the method that has some; two scenes.
 runs 0 "$oriel" chart ws other --quiet --out full --views 1 --method oriel-fast
-grep -q '^oriel-fast  *candidates=2 ' stdout.txt || fail "no settings"
+grep -q '^oriel-fast  *photos_per_pixel=1 ' stdout.txt || fail "no settings"
 grep -q '(all scenes)$' stdout.txt || fail "nothing over all scenes"
 for setting in 'photographs at 1/2' 'textures ycc' 'photos_per_pixel=1'; do
     grep -q "\"setting\": \"$setting\"" full/chart.json || fail "no row $setting"

@@ -29,14 +29,14 @@ tail -n1 stdout.txt | grep -q '\]' || fail "something after the JSON"
 grep -q '"points"' stdout.txt || fail "not all methods"
 
 # An option's values, and what they cost.
-runs 0 "$oriel" eval ws --vary candidates=1,3 --json out.json --quiet
-[ "$(grep -c '^oriel candidates=[13],' stdout.txt)" -eq 2 ] || fail "not a table for each value"
-grep -q '"setting": "candidates=3"' out.json || fail "no setting in the JSON"
+runs 0 "$oriel" eval ws --vary photos_per_pixel=1,3 --json out.json --quiet
+[ "$(grep -c '^oriel photos_per_pixel=[13],' stdout.txt)" -eq 2 ] || fail "not a table for each value"
+grep -q '"setting": "photos_per_pixel=3"' out.json || fail "no setting in the JSON"
 head -c1 out.json | grep -q '\[' || fail "the JSON of several values is no array"
-runs 2 "$oriel" eval ws --vary candidates
-runs 2 "$oriel" eval ws --vary candidates=1,nonsense
-runs 2 "$oriel" eval ws --vary candidates=1,2 --images pictures
-runs 2 "$oriel" eval ws --walk 3 --vary candidates=1
+runs 2 "$oriel" eval ws --vary photos_per_pixel
+runs 2 "$oriel" eval ws --vary photos_per_pixel=1,nonsense
+runs 2 "$oriel" eval ws --vary photos_per_pixel=1,2 --images pictures
+runs 2 "$oriel" eval ws --walk 3 --vary photos_per_pixel=1
 
 runs 2 "$oriel" eval ws --method nonsense
 grep -q 'airieau' stderr.txt || fail "does not list the methods"

@@ -152,7 +152,7 @@ static void a_tile_lists_a_photograph_that_sees_it(void **state)
     add_photo(&f, look_from(2, 0, 0, 96, 40), green);
     add_photo(&f, look_from(-2.6, 0, 0, 96, 40), red);
     struct orl_render_params params = best();
-    params.candidates = params.photos_per_pixel = 1;
+    params.photos_per_pixel = 1;
     params.fill = ORL_FILL_NONE;
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     for (int i = TILE; i < 2 * TILE; i++) {
@@ -163,17 +163,16 @@ static void a_tile_lists_a_photograph_that_sees_it(void **state)
     teardown(&f);
 }
 
-// The two best photographs begin in the middle of four pixels that are made at once. The third one paints
-// those that they do not show.
+// The best photograph begins in the middle of four pixels that are made at once. The second one paints those that it
+// does not show.
 static void each_pixel_gets_its_photographs(void **state)
 {
     (void)state;
-    enum { FIRST = 17 }; // column that the best photographs show
+    enum { FIRST = 17 }; // column that the best photograph shows
     struct fixture f;
     setup(&f, false);
     struct orl_view crop = look(0, 0, 0);
     crop.camera.cx -= FIRST;
-    add_photo(&f, crop, red);
     add_photo(&f, crop, red);
     add_photo(&f, look(0.4, 0, 0), green);
     struct orl_render_params params = best();
@@ -182,7 +181,7 @@ static void each_pixel_gets_its_photographs(void **state)
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     for (int y = 18; y < 30; y++) {
         assert_float_equal(color_at(&frame, FIRST - 1, y)[1], 1, 1e-3);
-        assert_float_equal(color_at(&frame, FIRST + 1, y)[0], 1, 1e-3); // at FIRST they fade out
+        assert_float_equal(color_at(&frame, FIRST + 2, y)[0], 1, 1e-3); // it fades in over two pixels
     }
     orl_frame_finish(&frame);
     teardown(&f);

@@ -67,7 +67,7 @@ static void options_that_nothing_reads_are_refused(void **state)
         assert_true(readers > 0);
     }
     struct orl_render_params params = orl_method_find(NULL, "airieau")->params;
-    assert_int_equal(orl_render_params_set(NULL, &params, "candidates=3"), ORL_ERR_ARGUMENT);
+    assert_int_equal(orl_render_params_set(NULL, &params, "photos_per_pixel=3"), ORL_ERR_ARGUMENT);
     assert_int_equal(orl_render_params_set(NULL, &params, "antialias=on"), ORL_OK);
     params.sample = ORL_SAMPLE_RADIANCE;
     assert_int_equal(orl_render_params_set(NULL, &params, "antialias=on"), ORL_ERR_ARGUMENT);
@@ -134,14 +134,14 @@ static void variants_take_the_settings_of_their_base(void **state)
     (void)state;
     const struct orl_method *high = orl_method_find(NULL, "oriel-high");
     struct orl_tuned tuned[] = {{(char *)"oriel", (char *)"sharpness", 16, NULL},
-                                {(char *)"oriel", (char *)"candidates", 4, NULL},
+                                {(char *)"oriel", (char *)"reconstructions", 4, NULL},
                                 {(char *)"oriel-high", (char *)"depth_tolerance", 0.25, NULL}};
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
                               .tuned_count = 2};
     struct orl_render_params params;
     orl_render_params_tuned(NULL, high, &scene, &params);
     assert_float_equal(params.sharpness, 16, 0);
-    assert_float_equal(params.candidates, high->params.candidates, 0);
+    assert_float_equal(params.reconstructions, high->params.reconstructions, 0);
     scene.tuned_count = 3;
     orl_render_params_tuned(NULL, high, &scene, &params);
     assert_float_equal(params.sharpness, high->params.sharpness, 0);

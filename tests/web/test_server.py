@@ -179,7 +179,7 @@ class Server(unittest.TestCase):
         self.assertEqual(self.complete(other)[1], before[1]) # the choice is that of one client
         # As the command line says it, and nothing has changed.
         for settings, problem in ((["depth_tolerance=7"], "from 1e-05 to 0.5"), (["x=1"], "option x is not known"),
-                                  (["candidates=2"], "does not read it"), (["weight"], "must be KEY=VALUE")):
+                                  (["photos_per_pixel=2"], "does not read it"), (["weight"], "must be KEY=VALUE")):
             wrong = self.told(client, {"method": "airieau", "set": settings})
             self.assertIn(problem, wrong["problem"])
             self.assertEqual(wrong["choice"], told["choice"])

@@ -20,7 +20,9 @@ function makePrograms(device, sources, manifest, planes)
         let made = null;
         return () => made ||= device.program(sources, vertex, file, defines);
     };
-    const reads = manifest.radiance && {RADIANCE: 1}, asks = {TILE, ...reads, ...(manifest.backdrop === "rests" && {RESTS: 1})};
+    const reads = manifest.radiance && {RADIANCE: 1};
+    const asks = {TILE, KEPT: Math.round(manifest.options.photos_per_pixel), ...reads,
+                  ...(manifest.backdrop === "rests" && {RESTS: 1})};
     const tries = {TILE, ...reads, PLANES: planes, TEXELS: costTexels(planes)};
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
@@ -302,8 +304,7 @@ export class Renderer {
                         photo_depth: store.depth, slot_size: [store.width, store.height],
                         last_mip: store.levels - 1, border_px: this.shared.ORL_BORDER_PX, photos: photos.length,
                         blur_per_radian: o.guess_blur, away: this.awayFromPhotos(camera.eye),
-                        candidates: Math.round(o.candidates), outlier_severity: o.outliers > 0 ? 1 / (o.outliers * o.outliers) : 0,
-                        photos_per_pixel: Math.round(o.photos_per_pixel),
+                        outlier_severity: o.outliers > 0 ? 1 / (o.outliers * o.outliers) : 0,
                         view_depth: f.depth.textures[0], tiles: f.tiles.textures[0]};
         for (const [key, value] of Object.entries(o))
             values[`opt.${key}`] = value;

@@ -3,7 +3,7 @@
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 
-const int ACROSS = 3, CANDIDATES = 8;
+const int ACROSS = 3, CANDIDATES = 5;
 #include "gather/candidates.glsl"
 
 uniform sampler2D view_depth; // < 0: guessed
@@ -36,5 +36,5 @@ void main()
         candidate_insert(candidate_penalty(least, seen), i, best, index);
     }
     chosen = uvec2(index[0] | index[1] << 8 | index[2] << 16 | index[3] << 24,
-                   index[4] | index[5] << 8 | index[6] << 16 | index[7] << 24);
+                   index[4]);
 }

@@ -1,5 +1,4 @@
 // Blends the best few photographs into each pixel, as shaders/gather/tiled.comp does.
-const int KEPT = 4;
 uniform float outlier_severity; // 1 / opt.outliers^2; 0: no outlier rejection
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
@@ -9,8 +8,6 @@ uniform float outlier_severity; // 1 / opt.outliers^2; 0: no outlier rejection
 
 uniform sampler2D view_depth; // < 0: guessed
 uniform highp usampler2D tiles; // choose.frag
-uniform int candidates;
-uniform float photos_per_pixel;
 uniform float away; // 1, but less near the place of a photograph that shows what all together give
 layout(location = 0) out vec4 painted; // shared/pixel.glsl, finished
 // r, g: number of the best photograph, high and low byte; b: SOFT: luma of soft splats in the photographs; a: 1
@@ -42,18 +39,14 @@ void main()
     ranking r;
     clear(r);
     uvec2 list = texelFetch(tiles, at / TILE, 0).xy;
-    for (int c = 0; c < candidates; c++) {
+    for (int c = 0; c <= KEPT; c++) {
         int i = photo_listed(list, c);
-        if (i < 0)
-            break;
-        insert(consider(i, photo_at(i), s), r);
+        rank(consider(i, photo_at(max(i, 0)), s), c, r);
     }
-    for (int k = 1; k < KEPT; k++)
-        r.next = photos_per_pixel == float(k) ? r.best[k].penalty : r.next;
     samples from;
     from.detail = vec4(0.0);
     for (int k = 0; k < KEPT; k++) {
-        sight one = r.best[k];
+        sight one = r.of[k];
         from.weight[k] = sight_weight(r, k);
         from.shown[k] = vec4(0.0);
         if (from.weight[k] > 0.0)
@@ -64,7 +57,7 @@ void main()
     if (!(color.a > 0.0))
         return;
     painted = guessed && blur > 0.0 ? pixel_to_blur(color.rgb, blur) : pixel_finished(color.rgb, !guessed);
-    float number = photo_at(r.best[0].index).file.x;
+    float number = photo_at(r.of[0].index).file.x;
     source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 1.0);
 #ifdef SOFT
     source.b = luma;

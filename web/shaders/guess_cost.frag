@@ -3,7 +3,7 @@
 
 uniform sampler2D view_depth; // < 0: guessed
 uniform highp usampler2D tiles; // choose.frag
-uniform int candidates, CELL;
+uniform int CELL;
 uniform float min_inverse;
 layout(location = 0) out vec4 costs;
 
@@ -15,7 +15,7 @@ float depth_at(ivec2 at)
 
 int photo_to_ask(ivec2 cell, int c)
 {
-    return c < candidates ? photo_listed(texelFetch(tiles, cell * CELL / TILE, 0).xy, c) : -1;
+    return photo_listed(texelFetch(tiles, cell * CELL / TILE, 0).xy, c);
 }
 
 #include "guess/cost.glsl"
