@@ -57,7 +57,7 @@
     NUMBER(nearest, 4, 1, 1024, "photographs", "select=nearest select=princ", ORL_NO_TRIES, \
         "How many photographs a frame uses.") \
     NUMBER(photos_per_pixel, 4, 1, 4, "photographs", "paint=tiled", ORL_NO_TRIES, \
-        "The most photographs that are blended into a pixel, of one more that it asks.") \
+        "The most photographs that are blended into a pixel. One more is asked and left out.") \
     NUMBER(outliers, 0.3f, 0, 1, "square root of light", "combine=robust", ORL_NO_TRIES, \
         "A sample that differs from the consensus by this much counts half. With 0 there are " \
         "no outliers.") \

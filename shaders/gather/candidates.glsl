@@ -1,6 +1,7 @@
-// The photographs that can paint a tile of the screen best, for the renderer and for the page. The file that
-// includes this one defines CANDIDATES, how many they are. RESTS: the backdrop rests in the photographs.
+// The photographs that can paint a tile of the screen best, for the renderer and for the page. RESTS: the backdrop
+// rests in the photographs.
 #include "gather/backdrop.glsl"
+#include "shared/constants.h"
 
 // Takes a sample point p of the tile into account (z 0: no depth there; guess: 1 where it is estimated) if
 // the photograph shows it.
@@ -27,9 +28,9 @@ float candidate_penalty(float least, float seen)
 }
 
 // Insertion sort, best first.
-void candidate_insert(float penalty, int photo, inout float best[CANDIDATES], inout int index[CANDIDATES])
+void candidate_insert(float penalty, int photo, inout float best[ORL_CANDIDATES], inout int index[ORL_CANDIDATES])
 {
-    for (int c = 0; c < CANDIDATES; c++) {
+    for (int c = 0; c < ORL_CANDIDATES; c++) {
         if (penalty < best[c]) {
             float b = best[c];
             int n = index[c];

@@ -7,7 +7,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth; // < 0: estimated background depth
 layout(std430, binding = 1) writeonly buffer tile_lists {
-    int chosen[]; // CANDIDATES per tile, best first, -1: none
+    int chosen[]; // ORL_CANDIDATES per tile, best first, -1: none
 };
 
 const int ACROSS = 3; // sample points of a tile in each direction
@@ -35,9 +35,9 @@ void main()
     vec3 points[ACROSS * ACROSS];
     float guess[ACROSS * ACROSS];
     sample_depths(tile, points, guess);
-    float best[CANDIDATES];
-    int index[CANDIDATES];
-    for (int c = 0; c < CANDIDATES; c++) {
+    float best[ORL_CANDIDATES];
+    int index[ORL_CANDIDATES];
+    for (int c = 0; c < ORL_CANDIDATES; c++) {
         best[c] = NOT_SEEN;
         index[c] = -1;
     }
@@ -50,6 +50,6 @@ void main()
         candidate_insert(candidate_penalty(least, seen), i, best, index);
         i++;
     } while (i < photo_count);
-    for (int c = 0; c < CANDIDATES; c++)
-        chosen[(tile.y * row + tile.x) * CANDIDATES + c] = index[c];
+    for (int c = 0; c < ORL_CANDIDATES; c++)
+        chosen[(tile.y * row + tile.x) * ORL_CANDIDATES + c] = index[c];
 }

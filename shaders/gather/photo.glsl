@@ -31,7 +31,7 @@ struct Point {
     bool guessed; // its depth is the estimated background depth
 };
 
-// Mipmapped. Either sRGB, decoded after the filter (gather/sample/srgb.glsl), or radiance: linear exposure *
+// Mipmapped. Either sRGB, which is decoded after the filter, or radiance: linear exposure *
 // confidence * ORL_RADIANCE_SCALE, with the confidence weight in alpha, so that clipped pixels (confidence near
 // 0) do not affect filtered neighbours.
 layout(binding = 0) uniform sampler2DArray photo_color;

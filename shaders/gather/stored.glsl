@@ -1,5 +1,5 @@
-// Colours of photographs as textures hold them, for the renderer and for the page: sRGB, which the file that reads them
-// decodes after the filter, or with RADIANCE radiance.
+// Colours of photographs as textures hold them, for the renderer and for the page: sRGB, which is decoded after the
+// filter. RADIANCE: photographs are radiance, which needs no decoding.
 #include "shared/srgb.glsl"
 
 // The light of a colour.
@@ -12,7 +12,7 @@ vec3 stored_light(vec3 stored)
 #endif
 }
 
-// The mean of four. The squares of sRGB are about as light, and those of its luma too.
+// The mean of four. The square of an sRGB value, or of its luma, is nearly proportional to light.
 vec4 stored_mean(vec4 a, vec4 b, vec4 c, vec4 d)
 {
 #ifdef RADIANCE

@@ -59,7 +59,7 @@ void main()
         clear(rankings[k]);
     }
     ivec2 tile = corner / tile_side; // of all four pixels, since the tile's side is even
-    int list = (tile.y * tiles_across + tile.x) * CANDIDATES;
+    int list = (tile.y * tiles_across + tile.x) * ORL_CANDIDATES;
     for (int c = 0; c <= KEPT; c++) {
         int i = chosen[list + c];
         photo source = photo_at(max(i, 0));

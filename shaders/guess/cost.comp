@@ -1,6 +1,7 @@
 // Costs of the planes of each cell.
 #include "gather/photo.glsl"
 #include "guess/cells.glsl"
+#include "shared/constants.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D view_depth;  // < 0: estimated background depth
@@ -20,7 +21,7 @@ float depth_at(ivec2 at)
 int photo_to_ask(ivec2 cell, int c)
 {
     ivec2 tile = cell * CELL / tile_side;
-    return chosen[(tile.y * tiles_across + tile.x) * CANDIDATES + c];
+    return chosen[(tile.y * tiles_across + tile.x) * ORL_CANDIDATES + c];
 }
 
 #include "guess/cost.glsl"

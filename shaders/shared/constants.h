@@ -5,6 +5,8 @@
 
 // Pixels over which photographs fade out at their borders, by the weight `lumigraph`.
 #define ORL_BORDER_PX 2.0
+// Photographs that are listed for each tile of the screen: one more than a pixel can blend.
+#define ORL_CANDIDATES 5
 // Ground farther than so many of the photographs' heights above it is ignored: what stands on it hides it.
 #define ORL_GROUND_REACH 20.0
 // The farthest estimate of background depth, as a multiple of a typical depth of the scene.

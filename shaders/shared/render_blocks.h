@@ -120,8 +120,6 @@ ORL_BLOCK(gather_block)
 #define ORL_PHOTO_SOFT 4
 #define ORL_BICUBIC 1 // value of opt.sampling
 
-// Selection of photographs per tile.
-#define CANDIDATES 5   // photographs listed per tile: one more than a pixel can blend
 // Estimated depth from photographs: lines of cells of a work group.
 #define GUESS_LINES 32
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel

@@ -3,7 +3,7 @@
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 
-const int ACROSS = 3, CANDIDATES = 5;
+const int ACROSS = 3;
 #include "gather/candidates.glsl"
 
 uniform sampler2D view_depth; // < 0: guessed
@@ -22,9 +22,9 @@ void main()
         points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(depth);
         guess[i] = depth < 0.0 ? 1.0 : 0.0;
     }
-    float best[CANDIDATES];
-    int index[CANDIDATES];
-    for (int c = 0; c < CANDIDATES; c++) {
+    float best[ORL_CANDIDATES];
+    int index[ORL_CANDIDATES];
+    for (int c = 0; c < ORL_CANDIDATES; c++) {
         best[c] = NOT_SEEN;
         index[c] = 255;
     }

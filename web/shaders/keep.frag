@@ -1,5 +1,5 @@
-// One level of a texture into the same level of a photograph. LUMA: its red, for the alpha of the photograph. SRGB: it is
-// linear light as it is read, and kept as sRGB.
+// Copies one level of a texture into the same level of a photograph. LUMA: the red channel, into the alpha of the
+// photograph. SRGB: the texture unit decodes the texture, and the photograph keeps sRGB.
 #include "shared/srgb.glsl"
 
 uniform sampler2D shown; // mipmapped

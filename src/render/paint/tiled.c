@@ -5,13 +5,14 @@
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
+#include "shared/constants.h"
 
 // Makes room for the lists of photographs of each tile and for the marks of unfinished work groups.
 static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
 {
     struct gather *g = &frame->paint->gather;
     ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles",
-                          tiles * CANDIDATES * sizeof(int), &g->tile_lists));
+                          tiles * ORL_CANDIDATES * sizeof(int), &g->tile_lists));
     ORL_TRY(orl_make_room(frame->gpu, "groups with unfinished pixels", groups * sizeof(uint32_t),
                           &g->unfinished));
     orl_buf_fill(g->unfinished, 0);
