@@ -137,8 +137,8 @@ static void what_is_small_in_a_tile_is_painted(void **state)
     teardown(&f);
 }
 
-// A plate hides all of a tile's wall from the green photograph, which is nearer to the view. A list of one
-// photograph must name the red one, which sees the wall.
+// A plate hides all of a tile's wall from the green photographs, which are nearer to the view. A pixel that blends one
+// photograph asks the two best of a list: the red one, which sees the wall, must be among them.
 static void a_tile_lists_a_photograph_that_sees_it(void **state)
 {
     (void)state;
@@ -150,6 +150,7 @@ static void a_tile_lists_a_photograph_that_sees_it(void **state)
     // The tile shows the wall from -0.8 to 0.8, and the view shows the plate right of it.
     set_square(&f.scene.points, WALL * WALL, PLATE, 1, 1, 2, blue);
     add_photo(&f, look_from(2, 0, 0, 96, 40), green);
+    add_photo(&f, look_from(2, 0.1, 0, 96, 40), green);
     add_photo(&f, look_from(-2.6, 0, 0, 96, 40), red);
     struct orl_render_params params = best();
     params.photos_per_pixel = 1;
