@@ -84,7 +84,7 @@ static inline size_t test_count_entries(const char *dir)
 // the least of several measurements is taken.
 static inline void test_grows_in_proportion(double (*take)(int count))
 {
-    enum { FEW = 5000, TIMES = 16, MOST = 8 * TIMES, REPEATS = 8 };
+    enum { FEW = 5000, TIMES = 16, MOST = 8 * TIMES, REPEATS = 64 };
     double few = INFINITY, many = INFINITY;
     int repeats = 0;
     do {

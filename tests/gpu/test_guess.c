@@ -9,6 +9,7 @@ static const double FOCAL = 128, WALL_Z = 4, BEHIND_Z = 8, BEFORE_Z = 3;
 
 static struct orl_gpu *gpu;
 static const double opening = 1.1; // half its side
+static const struct orl_ground no_ground = {.height = 0};
 
 // Squares of random brightness, half a unit wide, in 8 bits.
 static uint8_t squares(double x, double y)
@@ -68,11 +69,13 @@ static struct orl_render_params with_depths(float depths)
 }
 
 // Mean absolute error of the picture in the middle columns of some rows, with the squares in the plane z.
-static double error_in_rows(const double eyes[4], float depths, double z, int first, int end)
+static double error_in_rows(const double eyes[4], float depths, double z, int first, int end,
+                            const struct orl_ground *ground)
 {
     struct fixture f;
     setup_empty(&f, WALL_Z);
     make_wall(&f.scene.points);
+    f.scene.ground = *ground;
     for (size_t i = 0; i < 4; i++)
         add_true_photo(&f, eyes[i], z);
     struct orl_render_params params = with_depths(depths);
@@ -94,7 +97,7 @@ static double error_in_rows(const double eyes[4], float depths, double z, int fi
 // The same in the middle of the opening.
 static double error_with(const double eyes[4], float depths, double z)
 {
-    return error_in_rows(eyes, depths, z, SIDE / 2 - INNER, SIDE / 2 + INNER);
+    return error_in_rows(eyes, depths, z, SIDE / 2 - INNER, SIDE / 2 + INNER, &no_ground);
 }
 
 static void check_better(double rim, double tried)
@@ -127,7 +130,19 @@ static void cells_at_the_rim_learn_from_all_sides(void **state)
 {
     (void)state;
     const int end = SIDE / 2 + (int)(opening * FOCAL / WALL_Z) - 1, first = end - 4;
-    check_better(error_in_rows(around, 0, BEHIND_Z, first, end), error_in_rows(around, 16, BEHIND_Z, first, end));
+    check_better(error_in_rows(around, 0, BEHIND_Z, first, end, &no_ground),
+                 error_in_rows(around, 16, BEHIND_Z, first, end, &no_ground));
+}
+
+// What photographs show behind the ground is not there: they agree at 8, and the ground lies at 5, as a wall.
+static void nothing_moves_behind_the_ground(void **state)
+{
+    (void)state;
+    const struct orl_ground wall = {.plane = {0, 0, -1, 5}, .height = 1};
+    const int first = SIDE / 2 - INNER, end = SIDE / 2 + INNER;
+    double before = error_in_rows(around, 16, BEHIND_Z, first, end, &wall), open = error_with(around, 16, BEHIND_Z);
+    print_message("mean error: %.3f, before the ground %.3f\n", open, before);
+    assert_true(before > 0.1 && before > 2 * open);
 }
 
 // The surfaces around an opening are its nearest background. Photographs that agree before it show
@@ -301,6 +316,7 @@ int main(void)
         cmocka_unit_test(photographs_tell_the_depth_behind_an_opening),
         cmocka_unit_test(photographs_that_see_the_wall_have_no_say),
         cmocka_unit_test(cells_at_the_rim_learn_from_all_sides),
+        cmocka_unit_test(nothing_moves_behind_the_ground),
         cmocka_unit_test(nothing_comes_before_the_background),
         cmocka_unit_test(guesses_change_without_a_line),
         cmocka_unit_test(guesses_continue_slanting_surfaces),
