@@ -47,10 +47,6 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
     return vec4(photo_filtered(source, pixel, mip).rgb, 1.0);
 }
 
-// How much detail of the best photograph counts, as a share of what is shown: more stands beside edges alone, which do
-// not lie in the same place in all photographs.
-const float DETAIL_MAX = 0.25;
-
 // The sample of the k-th best photograph, from 0, and w of photo_texel. The best one is read with the filter that is
 // asked for, the others with one fetch. detail: set for k = 0 to what the bicubic filter adds, as a share of the sample
 // without it.
@@ -64,8 +60,7 @@ vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
     vec4 plain, sharp = photo_bicubic(source, pixel, mip, plain);
     plain.rgb = stored_light(plain.rgb);
     sharp.rgb = stored_light(sharp.rgb);
-    vec4 most = DETAIL_MAX * plain;
-    detail = clamp(sharp - plain, -most, most) / max(plain, 1e-9);
+    detail = (sharp - plain) / max(plain, 1e-9);
     return vec4(photo_aligned(source, pixel, sharp.rgb), sharp.a);
 #else
     return photo_filtered(source, pixel, mip);
