@@ -87,7 +87,7 @@ vec4 plane_costs(ivec2 cell, float estimate, int first)
         photo source = photo_at(max(i, 0));
         for (int n = 0; n < AT_ONCE; n++)
             ask(source, i >= 0,
-                ray / max(estimate * plane_share(float(first + n)), min_inverse),
+                ray / max(estimate * plane_share(first + n), min_inverse),
                 opinions[n]);
         c++;
         i = c < ASKED ? photo_to_ask(cell, c) : -1;

@@ -6,7 +6,7 @@
 const float CLOSED = -1.0; // cost of the planes of a cell that is not open
 
 // Inverse depth of a plane as a share of the estimate's.
-float plane_share(float k)
+float plane_share(int k)
 {
-    return 1.0 - k / float(PLANES - 1);
+    return 1.0 - float(k) / float(PLANES - 1);
 }
