@@ -1,10 +1,6 @@
 // A backdrop that rests in the pictures, as behind a turntable. Included after
 // gather/hidden.glsl; painters use it where RESTS is defined.
 
-// Factor on the penalty of a photograph that shows the object where the backdrop would be. It paints
-// what no photograph shows of the backdrop, and holes of surfaces.
-const float BACKDROP_HIDDEN = 8.0;
-
 // True if a photograph shows the backdrop at the place of its camera frame where the view has p.
 bool photo_backdrop(photo source, vec3 p, out vec2 pixel)
 {

@@ -26,7 +26,6 @@ sight consider(int i, photo source, spot s)
     pixel = backdrop ? place : pixel;
     z = backdrop ? s.p.z : z;
     sees = backdrop ? 1.0 : sees;
-    penalty *= backdrop || !is_guess(s) ? 1.0 : BACKDROP_HIDDEN;
 #endif
     float sure = sees * photo_border(source, pixel);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > 1e-4;

@@ -17,18 +17,15 @@ bool photo_unhidden(vec4 seen, float z)
                       seen.z > 0.0 && seen.z < nearest, seen.w > 0.0 && seen.w < nearest));
 }
 
-// How far a photograph is trusted that has no depth where the surface would be.
-const float UNKNOWN_TRUST = 0.5;
-
-// Probability that the photograph saw this surface: 1 where its depth agrees, UNKNOWN_TRUST
-// where it has no depth, 0 where it saw another surface.
+// Probability that the photograph saw this surface: 1 where its depth agrees or it has none, 0 where it saw another
+// surface.
 float photo_seen_share(vec4 seen, float z)
 {
     vec4 off = abs(seen - z) * (1.0 / (z * opt.depth_tolerance));
     vec4 share = clamp(2.0 - off, 0.0, 1.0);
     float agrees = max(max(share.x, share.y), max(share.z, share.w));
     bool unknown = all(lessThanEqual(seen, vec4(0.0)));
-    return unknown ? UNKNOWN_TRUST : agrees;
+    return unknown ? 1.0 : agrees;
 }
 
 // Parallax between the view and the photograph, in radians, from which a point behind the estimated

@@ -6,8 +6,7 @@
 float visible_surface(photo source, Point at, vec4 seen, float z)
 {
     vec4 same = clamp(2.0 - abs(seen - z) / (z * opt.depth_tolerance), 0.0, 1.0);
-    float share = dot(mix(same, vec4(UNKNOWN_TRUST), lessThanEqual(seen, vec4(0.0))),
-                      vec4(0.25));
+    float share = dot(mix(same, vec4(1.0), lessThanEqual(seen, vec4(0.0))), vec4(0.25));
     return share * share;
 }
 
