@@ -1,7 +1,7 @@
-// Averages each pixel that antialias_find.comp listed with its 3x3 neighbourhood, with separable
-// weights 0.35, 1, 0.35. The average is of square roots of light, so that a bright side does not
-// swallow a dark one. The first run writes into the list, since neighbours still need the original
-// colours; the run with WRITE copies the list to the picture. HALF: the picture has half floats.
+// Averages each pixel that antialias_find.comp listed with its 3x3 neighbourhood. The first run writes
+// into the list, since neighbours still need the original colours; the run with WRITE copies the list to
+// the picture. HALF: the picture has half floats.
+#include "edges/edge.glsl"
 #include "edges/edge_list.glsl"
 
 layout(local_size_x = EDGE_GROUP) in;
@@ -13,15 +13,10 @@ layout(rgba32f, binding = 0) uniform image2D color;
 
 vec3 average(uvec4 edge)
 {
-    float aside = 0.35 * uintBitsToFloat(edge.y);
-    vec3 sum = vec3(0.0);
-    for (int n = 0; n < 9; n++) {
-        ivec2 off = ivec2(n % 3, n / 3) - 1;
-        sum += sqrt(imageLoad(color, edge_pixel(edge) + off).rgb) *
-               (off.x != 0 ? aside : 1.0) * (off.y != 0 ? aside : 1.0);
-    }
-    sum /= (1.0 + 2.0 * aside) * (1.0 + 2.0 * aside);
-    return sum * sum;
+    vec3 around[9];
+    for (int n = 0; n < 9; n++)
+        around[n] = imageLoad(color, edge_pixel(edge) + ivec2(n % 3, n / 3) - 1).rgb;
+    return edge_mean(around, uintBitsToFloat(edge.y));
 }
 
 void main()

@@ -7,6 +7,7 @@
 #define BLOCK_IMAGE
 #include "shared/pixel.glsl"
 #include "shared/render_blocks.h"
+#include "fill/softened.glsl"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 // Input: encoded as in shared/pixel.glsl, as finished pixels with FINISHED, else as blended pixels.
@@ -30,23 +31,6 @@ layout(rgba32f, binding = 3) readonly uniform image2D trusted; // z: see gather/
 #if defined(FINISHED) || defined(RADIANCE)
 // Sums over 2x2 pixels of (colour, 1) where depth is estimated, with mipmaps.
 layout(binding = 0) uniform sampler2D guesses;
-
-vec4 guesses_around(ivec2 at, float blur)
-{
-    vec2 where = (vec2(at) + 0.5) / vec2((image_size + 1) / 2 * 2);
-    return textureLod(guesses, where, max(blur - 1.0, 0.0));
-}
-
-// Colour on estimated depth, blurred as far as it may be displaced, since wrong details are worse
-// than none. Only pixels of estimated depth are mixed: colour on known depth is in its place.
-vec3 softened(ivec2 at, vec3 sharp, float blur)
-{
-    blur = clamp(blur, 0.0, log2(max(blur_max, 1.0)));
-    vec4 around = guesses_around(at, blur);
-    // The weight may vanish where a driver's mipmaps omit an isolated pixel.
-    vec3 soft = around.a > 1e-6 ? around.rgb / around.a : sharp;
-    return mix(sharp, soft, min(blur, 1.0));
-}
 #endif
 
 void compose(ivec2 parent)
@@ -64,7 +48,7 @@ void compose(ivec2 parent)
         float blur = pixel_blur(pixel);
         if (!pixel_is_finished(pixel))
             imageStore(picture, at,
-                       pixel_finished(blur > 0.0 ? softened(at, pixel.rgb, blur) : filled, false));
+                       pixel_finished(blur > 0.0 ? softened(guesses, at, image_size, pixel.rgb, blur) : filled, false));
 #else
         bool on_surface = imageLoad(depth, at).r > 0.0;
         float weight = pixel_weight(pixel);
@@ -72,7 +56,7 @@ void compose(ivec2 parent)
         own = layers == 1 ? pixel.rgb + (1.0 - weight) * filled : own;
 #ifdef RADIANCE
         float blur = imageLoad(trusted, at).z - 1.0;
-        own = blur > 0.0 ? softened(at, own, blur) : own;
+        own = blur > 0.0 ? softened(guesses, at, image_size, own, blur) : own;
 #endif
         // A pixel whose light is only a lower bound takes the light around it if that is brighter.
         own = weight > 0.0 && !pixel_at_least(pixel) ? own : max(own, filled);

@@ -13,13 +13,6 @@ layout(r32f, binding = 1) uniform image2D depth;
 #define FAR
 #include "fill/fill.glsl"
 
-// Inverse depth of the ground; 0: the ray misses the ground.
-float on_ground(ivec2 at)
-{
-    float inverse = dot(ground.xyz, vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0));
-    return inverse > ground.w ? inverse : 0.0;
-}
-
 void main()
 {
     ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
@@ -29,9 +22,8 @@ void main()
     fill_finer(parent, finer);
     for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
-        // Surfaces that recede would continue beyond infinity.
-        float inverse = max(finer[k].r / finer[k].a, 1.0 / (ORL_GUESS_FARTHEST * depth_scale));
+        vec3 ray = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
         if (finer[k].a > 0.0 && !(imageLoad(depth, at).r > 0.0))
-            imageStore(depth, at, vec4(-1.0 / max(inverse, on_ground(at))));
+            imageStore(depth, at, vec4(slope_guess(finer[k], 1.0 / (ORL_GUESS_FARTHEST * depth_scale), ground, ray)));
     }
 }

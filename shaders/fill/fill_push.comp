@@ -1,6 +1,6 @@
 // Fills pixels without a value bilinearly from the coarser level (Gortler 1996, push). One
 // invocation handles 2x2 pixels.
-// FAR: the values are depths; see fill.glsl.
+// FAR: the values are those of fill/slope.glsl.
 #define BLOCK_IMAGE
 #include "shared/render_blocks.h"
 

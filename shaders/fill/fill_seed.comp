@@ -1,8 +1,6 @@
 // Writes the finest level of the pyramid of hole filling, at half the picture's size: the weighted
 // sum of the known values among 2x2 pixels. The defines choose the value:
-// SEED_DEPTH: inverse depth and its slope, weighted so steeply towards far surfaces that a hole
-// continues the farther side of its rim, the visible background, rather than what lies between the
-// two sides. Inverse depth is linear on a plane.
+// SEED_DEPTH: inverse depth and its slope, as in fill/slope.glsl.
 // SEED_LEAST: light of pixels for which it is only a lower bound.
 // SEED_BRIGHTER: logarithm of light that is as bright as the lower bound that SEED_LEAST has spread
 // to this pixel, so that a clipped area does not become as dark as the wall beside it.
@@ -14,6 +12,7 @@
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 #ifdef SEED_DEPTH
+#include "fill/slope.glsl"
 layout(r32f, binding = 0) readonly uniform image2D known;
 layout(rgba16f, binding = 2) readonly uniform image2D normals; // 0: unknown
 #else
@@ -34,30 +33,14 @@ vec3 least = vec3(0.0);
 layout(rgba32f, binding = 1) writeonly uniform image2D seeded;
 #endif
 
-#ifdef SEED_DEPTH
-// A surface that is seen at a flatter angle, as a cosine, counts as if it faced the view: what its
-// slope would give grows without limit.
-const float FACING_MIN = 0.1;
-
-// The depth's value for the centre of its block, `by` pixels away; see fill.glsl.
-vec4 seed_depth(float z, ivec2 at, vec2 by)
-{
-    vec3 normal = imageLoad(normals, at).xyz;
-    vec3 ray = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
-    float facing = dot(normal, ray);
-    vec2 slope = normal.xy / (focal.xy * z * facing);
-    slope = abs(facing) > FACING_MIN * length(ray) ? slope : vec2(0.0);
-    float far = z / depth_scale, far2 = far * far, far4 = far2 * far2, far8 = far4 * far4;
-    float weight = clamp(far8 * far4 * far2, 1e-15, 1e15); // the 14th power; sums fit floats
-    return vec4(1.0 / z + dot(slope, by), 2.0 * slope, 1.0) * weight;
-}
-#endif
-
 vec4 seed(ivec2 at)
 {
     vec4 value = imageLoad(known, at); // 0 outside
 #ifdef SEED_DEPTH
-    return value.r > 0.0 ? seed_depth(value.r, at, 0.5 - vec2(at & 1)) : vec4(0.0);
+    vec3 ray = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
+    return value.r > 0.0 ? slope_seed(value.r, imageLoad(normals, at).xyz, ray, focal.xy, depth_scale,
+                                      0.5 - vec2(at & 1))
+                         : vec4(0.0);
 #elif defined(SEED_GUESSES)
     float weight = pixel_weight(value);
     return weight > 0.0 && imageLoad(trusted, at).z > 0.0 ? vec4(value.rgb / weight, 1.0)

@@ -2,13 +2,10 @@
 // CHUNKS: runs once for each chunk of points and writes the pixels that this chunk won; the last
 // run leaves level 1 complete.
 // NORMALS: level 0 has normals.
+#include "shared/constants.h"
 #include "proxy/splat.glsl"
 #include "proxy/octahedron.glsl"
 #include "proxy/surfel.glsl"
-
-// A splat this large, as a share of the picture's height, that is nearer than any photograph was to
-// a surface, is an outlier that the viewer has come upon: no surface is known so coarsely.
-const float OUTLIER_SHARE = 1.0 / 16.0;
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rg32ui, binding = 0) readonly uniform uimageBuffer points; // proxy/point.glsl
@@ -44,7 +41,7 @@ surfel splat(ivec2 at, int point)
     p *= 1.0 + behind * front_layer;
     vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
     float radius = point_radius(code, corner.w) * splat_scale;
-    bool outlier = p.z < near && radius * focal.y > OUTLIER_SHARE * float(view_size.y) * p.z;
+    bool outlier = p.z < near && radius * focal.y > ORL_OUTLIER_SHARE * float(view_size.y) * p.z;
     radius = outlier ? 0.0 : radius;
     return surfel(p.z, p.z + radius, p.z, radius, dot(n, p) > 0.0 ? -n : n,
                   pixel - (vec2(at) + 0.5));

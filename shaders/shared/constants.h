@@ -3,6 +3,9 @@
 #ifndef ORL_CONSTANTS_H
 #define ORL_CONSTANTS_H
 
+// A splat this large, as a share of the picture's height, that is nearer than any photograph was to
+// a surface, is an outlier that the viewer has come upon: no surface is known so coarsely.
+#define ORL_OUTLIER_SHARE 0.0625
 // Pixels over which photographs fade out at their borders, by the weight `lumigraph`.
 #define ORL_BORDER_PX 2.0
 // Photographs that are listed for each tile of the screen: one more than a pixel can blend.
@@ -14,6 +17,9 @@
 // How much a painted surface counts beside painted background in the colours of what no photograph shows: that is
 // background nearly always, not a part of the surface before it.
 #define ORL_SURFACE_SEED 0.1
+// The largest blur of guessed depth as a share of the picture's longer side: with a larger one, holes of a surface would
+// take the colours of what is beside it.
+#define ORL_BLUR_MAX 0.012
 // Cells in which estimated depths are tried, along the longer side of the picture, at least.
 #define ORL_GUESS_CELLS 48
 // The coarse part of what soft splats correct is a mean over a photograph's longer side divided by this: colours

@@ -157,8 +157,8 @@ ORL_BLOCK(image_block)
     FLOAT(depth_scale); // a typical depth of the scene
     INT(layers);        // compose: 1: a pixel's weight is alpha, and it lies over what is behind
     IVEC2(pictures);    // mean: index of the picture, number of them
-    FLOAT(blur_max);   // compose: largest blur of estimated depth, pixels
     FLOAT(footprint);   // antialias: pixels of a photograph in one of the view, each way
+    FLOAT(unused_1);
     FLOAT(unused_2);
     FLOAT(unused_3);
 };

@@ -28,7 +28,6 @@ static void compose(const struct frame *frame)
         .points_show = frame->params->paint == &orl_paint_points,
         .fills = fills(frame),
         .layers = frame->params->paint->layers,
-        .blur_max = orl_soften_max(frame->surface.width, frame->surface.height),
     };
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,

@@ -148,6 +148,7 @@ export class Renderer {
         this.planes = manifest.radiance ? 0 : Math.round(manifest.options.guess_depths);
         this.shared = constants(sources);
         this.programs = makePrograms(device, sources, manifest, this.planes);
+        this.focal = photos.reduce((sum, photo) => sum + photo.fx, 0) / photos.length;
         this.photos = new PhotoStore(device, this.programs, photos, photoBytes, manifest.radiance);
         this.soft = null; // splats, once they are loaded
         this.frame = null;
@@ -172,7 +173,8 @@ export class Renderer {
         this.resize(camera.width, camera.height);
         const o = this.manifest.options, f = this.frame;
         this.camera = camera;
-        this.values = {view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
+        this.values = {footprint: Math.max(this.focal / camera.fx, 1), // as orl_frame_footprint
+                       view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
                        front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
                        near: this.manifest.near || 0,
                        min_inverse: 1 / (this.shared.ORL_GUESS_FARTHEST * this.manifest.distance),
@@ -348,7 +350,8 @@ export class Renderer {
         const values = {mean_level: coarseLevel(camera, photos, this.shared.ORL_SOFT_COARSE),
                         correct_share: o.soft, mix_share: o.soft_mix,
                         blended: blended.textures[0], differs: differs.textures[0], source: f.painted.textures[1],
-                        composed: f.composed.textures[0], depth: this.depth.textures[0]};
+                        composed: f.composed.textures[0], depth: this.depth.textures[0],
+                        footprint: this.values.footprint};
         this.soft.draw(this.programs.soft(), blended, camera);
         this.device.makeLevels(values.blended);
         this.device.pass(this.programs.softCompare(), differs, values);
@@ -370,7 +373,7 @@ export class Renderer {
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
                           exposure: this.exposure, tone: this.tone,
-                          antialiases: whole && !this.manifest.radiance && this.finished === f.composed.textures[0]});
+                          footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance && this.finished === f.composed.textures[0]});
     }
 
     // A frame of its own as RGBA bytes, top row first.

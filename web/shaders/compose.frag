@@ -2,10 +2,9 @@
 // lie from its place, and the fill where nothing is. a: 1 on a surface.
 #include "colors.glsl"
 #include "fill_finer.glsl"
+#include "fill/softened.glsl"
 uniform sampler2D filled, guesses; // of seed_color.frag; guesses are mipmapped
 layout(location = 0) out vec4 composed;
-
-const float GUESS_BLUR_MAX = 0.012; // of the picture's longer side
 
 // The same for 2x2 pixels: single sharp pixels in what is blurred look like dirt.
 float blur_around(ivec2 at)
@@ -28,13 +27,6 @@ void main()
         return;
     }
     float blur = own.a > 0.5 ? 0.0 : blur_around(at);
-    blur = clamp(blur, 0.0, max(log2(GUESS_BLUR_MAX * float(max(area.x, area.y))), 0.0));
-    vec3 color = own.rgb;
-    if (blur > 0.0) {
-        vec2 where = (vec2(at) + 0.5) / vec2((area + 1) / 2 * 2);
-        vec4 around = textureLod(guesses, where, max(blur - 1.0, 0.0));
-        vec3 soft = around.a > 1e-6 ? around.rgb / around.a : color;
-        color = mix(color, soft, min(blur, 1.0));
-    }
+    vec3 color = blur > 0.0 ? softened(guesses, at, area, own.rgb, blur) : own.rgb;
     composed = pixel_finished(color, own.a > 0.5);
 }

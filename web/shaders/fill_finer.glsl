@@ -1,17 +1,13 @@
 // What a pixel gets from the coarser level of a filling pyramid: bilinear (Gortler 1996, push).
-// far: of inverse depth in x and its slope in yz, per pixel of the level, each times the weight in a.
-// As in shaders/fill/fill.glsl, they are interpolated with the fourth roots of their weights.
+// far: the values are those of fill/slope.glsl.
+#include "fill/slope.glsl"
 uniform bool far;
 
 // `to`: where the value is for, in pixels of the level, whose centres are whole numbers.
 vec4 fill_texel(sampler2D level, ivec2 at, vec2 to)
 {
     vec4 value = texelFetch(level, at, 0);
-    if (far) {
-        value = value.a > 0.0 ? value * (sqrt(sqrt(value.a)) / value.a) : vec4(0.0);
-        value.x += dot(value.yz, to - vec2(at));
-    }
-    return value;
+    return far ? slope_moved(slope_soft(value), to - vec2(at)) : value;
 }
 
 vec4 fill_finer(sampler2D level, ivec2 at)
@@ -23,9 +19,5 @@ vec4 fill_finer(sampler2D level, ivec2 at)
     vec4 below = fill_texel(level, clamp(parent + ivec2(0, side.y), ivec2(0), last), to);
     vec4 across = fill_texel(level, clamp(parent + side, ivec2(0), last), to);
     vec4 finer = 0.5625 * own + 0.1875 * (aside + below) + 0.0625 * across;
-    if (far) {
-        finer.yz *= 0.5; // pixels of the finer level are half as large
-        finer *= finer.a * finer.a * finer.a;
-    }
-    return finer;
+    return far ? slope_hard(finer) : finer;
 }

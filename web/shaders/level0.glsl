@@ -1,5 +1,6 @@
 // Level 0 of the pyramid: the nearest point of a pixel, moved to the mean depth of its layer, since
 // the nearest of many noisy points is too near.
+#include "shared/constants.h"
 #include "proxy/octahedron.glsl"
 #include "proxy/surfel.glsl"
 
@@ -9,9 +10,6 @@ uniform sampler2D layers; // layer.frag
 uniform float front_layer;
 uniform vec4 view_focal;
 uniform float near; // depth nearer than which large splats are strays
-
-// As in shaders/proxy/splat_resolve.comp.
-const float OUTLIER_SHARE = 1.0 / 16.0;
 
 bool within(ivec2 at, ivec2 area)
 {
@@ -26,7 +24,7 @@ surfel level0(ivec2 at)
     vec2 layer = texelFetch(layers, at, 0).xy;
     float behind = layer.y > 1.5 ? min(layer.x / layer.y, 1.0) : 0.0;
     float depth = splat.x * (1.0 + behind * front_layer);
-    bool outlier = depth < near && splat.y * view_focal.y > OUTLIER_SHARE * float(textureSize(splats, 0).y) * depth;
+    bool outlier = depth < near && splat.y * view_focal.y > ORL_OUTLIER_SHARE * float(textureSize(splats, 0).y) * depth;
     float radius = outlier ? 0.0 : splat.y;
     vec3 n = octahedron_decode(unpackSnorm2x16(texelFetch(splat_normals, at, 0).x));
     return surfel(depth, depth + radius, depth, radius, n, splat.zw);

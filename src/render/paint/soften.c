@@ -1,20 +1,12 @@
 #include "render/paint/soften.h"
 
 #include "render/paint/paint.h"
+#include "shared/constants.h"
 #include "shared/render_blocks.h"
-
-// The largest blur as a share of the picture's longer side: with a larger one, holes of a surface would
-// take the colours of what is beside it.
-static const float BLUR_MAX = 0.012f;
 
 void orl_soften_finish(struct orl_gpu *gpu, struct soften *soften)
 {
     orl_tex_destroy(gpu, &soften->guesses);
-}
-
-float orl_soften_max(int width, int height)
-{
-    return BLUR_MAX * (float)(width > height ? width : height);
 }
 
 enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
@@ -25,7 +17,7 @@ enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, in
                                     .tag = "guesses"};
     // A texel of the coarsest level is as large as the largest blur, or as the whole picture.
     int longer = width > height ? width : height;
-    float most = orl_soften_max(width, height);
+    float most = (float)ORL_BLUR_MAX * (float)longer;
     while ((float)(1 << params.levels) < most && longer >> (params.levels + 1) > 0)
         params.levels++;
     return orl_tex_fit(gpu, &params, &soften->guesses);

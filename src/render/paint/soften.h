@@ -9,7 +9,6 @@ struct soften {
 };
 
 // The largest blur of a picture of this size, pixels.
-float orl_soften_max(int width, int height);
 // Allocates for pictures of this size. Does nothing if all that is asked for is there.
 enum orl_result orl_soften_resize(struct orl_gpu *gpu, struct soften *soften, int width,
                                   int height);
