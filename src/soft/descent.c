@@ -44,9 +44,8 @@ void orl_soft_descent_finish(struct orl_gpu *gpu, struct orl_soft_descent *desce
 size_t orl_soft_descent_bytes(size_t splats, size_t entries, int width, int height)
 {
     const size_t vec4 = 4 * sizeof(float), pixels = (size_t)width * (size_t)height;
-    const size_t tiles = (size_t)orl_groups((size_t)width, ORL_SOFT_TILE) * orl_groups((size_t)height, ORL_SOFT_TILE);
     size_t own = splats * ((3 * ORL_SOFT_VEC4S + ORL_SOFT_SEEN_VEC4S) * vec4 + ORL_SOFT_BOUND_WORDS * sizeof(uint32_t));
-    size_t lists = (splats + tiles + 2 * entries + 2) * sizeof(int) + (entries + 1) * ORL_SOFT_SHARE_VEC4S * vec4;
+    size_t lists = (splats + orl_soft_tiles(width, height) + 2 * entries + 2) * sizeof(int) + (entries + 1) * ORL_SOFT_SHARE_VEC4S * vec4;
     // orl_soft_buffer makes lists larger by a half; the picture, its mip levels and its gradient are less than three.
     return own + lists + lists / 2 + 3 * pixels * vec4;
 }
@@ -92,8 +91,7 @@ static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, c
         .images = {{r->blended, 0, GL_READ_ONLY}, {d->gradient_target, 0, GL_READ_ONLY},
                    [5] = {d->share_texels, 0, GL_WRITE_ONLY}, [6] = {r->seen, 0, GL_READ_ONLY},
                    [7] = {r->entries, 0, GL_READ_ONLY}},
-        .groups = {orl_groups((size_t)block->tiles_across * orl_groups((size_t)block->view_size[1], ORL_SOFT_TILE),
-                              ORL_SOFT_TILE_GROUP)},
+        .groups = {orl_groups(r->lists.tiles, ORL_SOFT_TILE_GROUP)},
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), .params = block, .params_size = sizeof *block,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "oriel/gpu.h"
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, KEY_BITS = 32 };
 
@@ -59,10 +60,15 @@ static enum orl_result reserve(const struct orl_log *log, size_t count, struct o
     return lists->order_capacity ? ORL_OK : ORL_ERR_MEMORY;
 }
 
-enum orl_result orl_soft_lists_make(const struct orl_log *log, const uint32_t (*bounds)[ORL_SOFT_BOUND_WORDS],
-                                    size_t count, int tiles_across, int tiles_down, struct orl_soft_lists *lists)
+size_t orl_soft_tiles(int width, int height)
 {
-    const size_t tiles = (size_t)tiles_across * (size_t)tiles_down;
+    return (size_t)orl_groups((size_t)width, ORL_SOFT_TILE) * orl_groups((size_t)height, ORL_SOFT_TILE);
+}
+
+enum orl_result orl_soft_lists_make(const struct orl_log *log, const uint32_t (*bounds)[ORL_SOFT_BOUND_WORDS],
+                                    size_t count, int width, int height, struct orl_soft_lists *lists)
+{
+    const size_t across = orl_groups((size_t)width, ORL_SOFT_TILE), tiles = orl_soft_tiles(width, height);
     size_t entries = 0;
     for (size_t i = 0; i < count; i++)
         entries += bounds[i][0] ? area(tiles_of(bounds[i])) : 0;
@@ -71,6 +77,7 @@ enum orl_result orl_soft_lists_make(const struct orl_log *log, const uint32_t (*
     ORL_TRY(reserve(log, count, lists));
     ORL_TRY(orl_grow(log, (void **)&lists->listed, &lists->listed_capacity, tiles + 1 + entries, sizeof(int)));
     ORL_TRY(orl_grow(log, (void **)&lists->places, &lists->places_capacity, count + 1 + entries, sizeof(int)));
+    lists->tiles = tiles;
     lists->entries = entries;
     const size_t seen = lists->seen = sort(bounds, count, lists);
 
@@ -81,7 +88,7 @@ enum orl_result orl_soft_lists_make(const struct orl_log *log, const uint32_t (*
         struct tiles t = tiles_of(bounds[lists->order[k].splat]);
         for (int y = t.top; y <= t.bottom; y++)
             for (int x = t.left; x <= t.right; x++)
-                starts[(size_t)y * (size_t)tiles_across + (size_t)x]++;
+                starts[(size_t)y * across + (size_t)x]++;
     }
     int at = (int)tiles + 1;
     for (size_t i = 0; i <= tiles; i++) {
@@ -98,7 +105,7 @@ enum orl_result orl_soft_lists_make(const struct orl_log *log, const uint32_t (*
         struct tiles t = tiles_of(bounds[splat]);
         for (int y = t.top; y <= t.bottom; y++)
             for (int x = t.left; x <= t.right; x++) {
-                int entry = starts[(size_t)y * (size_t)tiles_across + (size_t)x]++;
+                int entry = starts[(size_t)y * across + (size_t)x]++;
                 lists->listed[entry] = splat;
                 places[place++] = entry - (int)tiles - 1;
             }

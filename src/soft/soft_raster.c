@@ -86,8 +86,6 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
 {
     *block = block_of(raster, view);
     block->smooths = smooths;
-    const int down = (int)orl_groups((size_t)view->camera.height, ORL_SOFT_TILE);
-    const size_t tiles = (size_t)block->tiles_across * (size_t)down;
     ORL_TRY(fit_target(gpu, raster, view->camera.width, view->camera.height));
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
@@ -98,9 +96,9 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
                    GL_BUFFER_UPDATE_BARRIER_BIT});
     orl_buf_read(raster->bounds, 0, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
     ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
-    ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, block->tiles_across, down,
-                                &raster->lists));
-    size_t bytes = (tiles + 1 + raster->lists.entries) * sizeof(int);
+    ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, view->camera.width,
+                                view->camera.height, &raster->lists));
+    const size_t tiles = raster->lists.tiles, bytes = (tiles + 1 + raster->lists.entries) * sizeof(int);
     ORL_TRY(orl_soft_buffer(gpu, "lists of soft splats", bytes, &raster->listed, GL_R32I, &raster->entries));
     orl_buf_write(raster->listed, 0, bytes, raster->lists.listed);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){

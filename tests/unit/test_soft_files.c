@@ -108,7 +108,7 @@ static void test_lists(void **state)
     const int listed[] = {4, 6, 8, 9, 0, 3, 2, 0, 2}, entries_of_0[] = {0, 3}, entries_of_2[] = {2, 4};
     struct orl_soft_lists lists = {0};
     for (int i = 0; i < 2; i++) { // the second time in the same memory
-        assert_int_equal(orl_soft_lists_make(NULL, bounds, 4, 3, 1, &lists), ORL_OK);
+        assert_int_equal(orl_soft_lists_make(NULL, bounds, 4, 3 * ORL_SOFT_TILE - 1, 1, &lists), ORL_OK);
         assert_int_equal(lists.entries, 5);
         assert_int_equal(lists.seen, 3);
         assert_memory_equal(lists.listed, listed, sizeof listed);
