@@ -1,7 +1,25 @@
-// The photographs that can paint a tile of the screen best, for the renderer and for the page. RESTS: the backdrop
-// rests in the photographs.
+// The photographs that can paint a tile of the screen best, for the renderer and for the page. The file that includes
+// this one defines
+//   float depth_at(ivec2 at): the view's depth, < 0: estimated.
+// RESTS: the backdrop rests in the photographs.
 #include "gather/backdrop.glsl"
 #include "shared/constants.h"
+
+const int ACROSS = 3; // sample points of a tile in each direction
+
+// Sample points of a tile in the view's camera frame; z 0: no depth there. guess: 1 where the depth
+// is estimated, else 0. side: of tiles, size: of the view, pixels.
+void sample_depths(ivec2 tile, int side, ivec2 size, out vec3 points[ACROSS * ACROSS],
+                   out float guess[ACROSS * ACROSS])
+{
+    for (int i = 0; i < ACROSS * ACROSS; i++) {
+        ivec2 at = tile * side + (2 * ivec2(i % ACROSS, i / ACROSS) + 1) * side / (2 * ACROSS);
+        at = min(at, size - 1);
+        float depth = depth_at(at);
+        points[i] = vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(depth);
+        guess[i] = depth < 0.0 ? 1.0 : 0.0;
+    }
+}
 
 // Takes a sample point p of the tile into account (z 0: no depth there; guess: 1 where it is estimated) if
 // the photograph shows it.
@@ -40,4 +58,26 @@ void candidate_insert(float penalty, int photo, inout float best[ORL_CANDIDATES]
             photo = n;
         }
     }
+}
+
+// The photographs of a tile, of the first `photos`, of which there is one at least: best first, -1: none.
+void list_candidates(ivec2 tile, int side, ivec2 size, int photos, out int index[ORL_CANDIDATES])
+{
+    vec3 points[ACROSS * ACROSS];
+    float guess[ACROSS * ACROSS];
+    sample_depths(tile, side, size, points, guess);
+    float best[ORL_CANDIDATES];
+    for (int c = 0; c < ORL_CANDIDATES; c++) {
+        best[c] = NOT_SEEN;
+        index[c] = -1;
+    }
+    int i = 0;
+    do { // the condition comes last: see tiled.comp
+        float least = NOT_SEEN, seen = 0.0;
+        photo source = photo_at(i);
+        for (int s = 0; s < ACROSS * ACROSS; s++)
+            candidate_sample(source, points[s], guess[s], least, seen);
+        candidate_insert(candidate_penalty(least, seen), i, best, index);
+        i++;
+    } while (i < photos);
 }
