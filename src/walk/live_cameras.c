@@ -55,10 +55,11 @@ static int64_t number_of(const char *name)
     return begin < end && end - begin <= DIGITS_MAX ? strtoll(begin, NULL, 10) : -1;
 }
 
-static int compare_pictures(const void *a, const void *b)
+// Of numbers, and of pictures, which begin with theirs.
+static int compare_numbers(const void *a, const void *b)
 {
-    const struct orl_live_picture *x = a, *y = b;
-    return (x->number > y->number) - (x->number < y->number);
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
 }
 
 static enum orl_result list_pictures(const struct orl_log *log, struct orl_live_camera *camera)
@@ -80,7 +81,7 @@ static enum orl_result list_pictures(const struct orl_log *log, struct orl_live_
     if (dir)
         closedir(dir);
     if (camera->count > 1)
-        qsort(camera->pictures, camera->count, sizeof *camera->pictures, compare_pictures);
+        qsort(camera->pictures, camera->count, sizeof *camera->pictures, compare_numbers);
     for (size_t i = 0; i < camera->count; i++) {
         int64_t number = camera->pictures[i].number;
         if (camera->newest >= 0 && number > camera->newest)
@@ -88,12 +89,6 @@ static enum orl_result list_pictures(const struct orl_log *log, struct orl_live_
         camera->newest = number > camera->newest ? number : camera->newest;
     }
     return result;
-}
-
-static int compare_numbers(const void *a, const void *b)
-{
-    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
 }
 
 // The least of the cameras' median intervals; 0: unknown.
@@ -115,10 +110,10 @@ static int64_t interval_of(const struct orl_live_cameras *cameras)
 
 // --- time steps ---
 
-// The oldest picture that is left, `at` pictures having been decided upon; NULL: none.
-static const struct orl_live_picture *oldest_of(const struct orl_live_camera *camera, size_t at)
+// The oldest picture that is left; NULL: none.
+static const struct orl_live_picture *oldest_of(const struct orl_live_camera *camera)
 {
-    return at < camera->count ? &camera->pictures[at] : NULL;
+    return camera->decided < camera->count ? &camera->pictures[camera->decided] : NULL;
 }
 
 static bool is_of(const struct orl_live_picture *picture, int64_t number, int64_t interval)
@@ -129,42 +124,40 @@ static bool is_of(const struct orl_live_picture *picture, int64_t number, int64_
 // What is known of the pictures that belong to the oldest one that is left.
 enum time_step { NONE, WAITS, LACKS, WHOLE };
 
-static enum time_step look_at(const struct orl_live_cameras *cameras, const size_t *at, int64_t interval,
-                              int64_t *number)
+static enum time_step look_at(const struct orl_live_cameras *cameras, int64_t interval, int64_t *number)
 {
     bool any = false, lacks = false, waits = false;
     for (size_t i = 0; i < cameras->count; i++) {
-        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i], at[i]);
+        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i]);
+        cameras->cameras[i].oldest = oldest;
         if (oldest && (!any || oldest->number < *number))
             *number = oldest->number;
         any = any || oldest;
     }
     for (size_t i = 0; any && i < cameras->count; i++) {
-        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i], at[i]);
-        lacks = lacks || !is_of(oldest, *number, interval);
-        waits = waits || !oldest;
+        lacks = lacks || !is_of(cameras->cameras[i].oldest, *number, interval);
+        waits = waits || !cameras->cameras[i].oldest;
     }
     // Before an interval is known, different time stamps may be of one time step.
     return !any ? NONE : !lacks ? WHOLE : waits || !interval ? WAITS : LACKS;
 }
 
-static void say_missing(const struct orl_live_cameras *cameras, const size_t *at, int64_t number,
-                        int64_t interval)
+static void say_missing(const struct orl_live_cameras *cameras, int64_t number, int64_t interval)
 {
     for (size_t i = 0; i < cameras->count; i++) {
         struct orl_live_camera *camera = &cameras->cameras[i];
-        if (!is_of(oldest_of(camera, at[i]), number, interval) && !camera->missing++)
+        if (!is_of(camera->oldest, number, interval) && !camera->missing++)
             orl_logf(cameras->log, ORL_LOG_WARNING, "%s: no picture %" PRId64 ", which other cameras have; "
                      "such time steps are left out", camera->name, number);
     }
 }
 
 // Says once that a camera stands still while others go on.
-static void say_late(const struct orl_live_cameras *cameras, const size_t *at, bool waits, double now_s)
+static void say_late(const struct orl_live_cameras *cameras, bool waits, double now_s)
 {
     for (size_t i = 0; i < cameras->count; i++) {
         struct orl_live_camera *camera = &cameras->cameras[i];
-        if (!waits || at[i] < camera->count) {
+        if (!waits || camera->oldest) {
             camera->waits_since_s = 0;
             camera->is_late = false;
         } else if (camera->waits_since_s <= 0) {
@@ -178,23 +171,22 @@ static void say_late(const struct orl_live_cameras *cameras, const size_t *at, b
     }
 }
 
-static enum orl_result copy_paths(const struct orl_live_cameras *cameras, const size_t *at, char **paths)
+static enum orl_result copy_paths(const struct orl_live_cameras *cameras, char **paths)
 {
     enum orl_result result = ORL_OK;
     for (size_t i = 0; i < cameras->count; i++) {
         free(paths[i]);
-        paths[i] = orl_strdup(cameras->log, cameras->cameras[i].pictures[at[i]].path);
+        paths[i] = orl_strdup(cameras->log, cameras->cameras[i].oldest->path);
         result = paths[i] ? result : ORL_ERR_MEMORY;
     }
     return result;
 }
 
 // May a picture belong to the next time step, with a camera that has none of the oldest number?
-static bool suits_next(const struct orl_live_cameras *cameras, const size_t *at, int64_t number,
-                       int64_t interval, int64_t picture)
+static bool suits_next(const struct orl_live_cameras *cameras, int64_t number, int64_t interval, int64_t picture)
 {
     for (size_t i = 0; i < cameras->count; i++) {
-        const struct orl_live_picture *oldest = oldest_of(&cameras->cameras[i], at[i]);
+        const struct orl_live_picture *oldest = cameras->cameras[i].oldest;
         if (!is_of(oldest, number, interval) && is_of(oldest, picture, interval))
             return true;
     }
@@ -202,47 +194,43 @@ static bool suits_next(const struct orl_live_cameras *cameras, const size_t *at,
 }
 
 // Goes on to what is newer than the time step of this number.
-static void decide(struct orl_live_cameras *cameras, size_t *at, const size_t *before, int64_t number,
-                   int64_t interval)
+static void decide(struct orl_live_cameras *cameras, int64_t number, int64_t interval)
 {
     for (size_t i = 0; i < cameras->count; i++) {
         struct orl_live_camera *camera = &cameras->cameras[i];
-        const struct orl_live_picture *oldest;
-        while (is_of(oldest = oldest_of(camera, at[i]), number, interval) &&
-               !suits_next(cameras, before, number, interval, oldest->number)) {
-            camera->last = oldest->number;
-            at[i]++;
+        const struct orl_live_picture *left;
+        while (is_of(left = oldest_of(camera), number, interval) &&
+               !suits_next(cameras, number, interval, left->number)) {
+            camera->last = left->number;
+            camera->decided++;
         }
     }
 }
 
 enum orl_result orl_live_cameras_look(struct orl_live_cameras *cameras, double now_s, char **paths)
 {
-    // How many pictures of each camera have been decided upon, and had been.
-    size_t *at = orl_array(cameras->log, 2 * cameras->count, sizeof *at);
-    size_t *before = at ? at + cameras->count : NULL;
-    enum orl_result result = at ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
     int64_t interval, number = -1;
     enum time_step step = NONE;
-    for (size_t i = 0; i < cameras->count; i++)
+    for (size_t i = 0; i < cameras->count; i++) {
         paths[i] = NULL;
+        cameras->cameras[i].decided = 0;
+    }
     for (size_t i = 0; result == ORL_OK && i < cameras->count; i++)
         result = list_pictures(cameras->log, &cameras->cameras[i]);
     interval = interval_of(cameras);
-    while (result == ORL_OK && (step = look_at(cameras, at, interval, &number)) >= LACKS) {
+    while (result == ORL_OK && (step = look_at(cameras, interval, &number)) >= LACKS) {
         if (step == WHOLE)
-            result = copy_paths(cameras, at, paths);
+            result = copy_paths(cameras, paths);
         else
-            say_missing(cameras, at, number, interval);
-        memcpy(before, at, cameras->count * sizeof *at);
-        decide(cameras, at, before, number, interval);
+            say_missing(cameras, number, interval);
+        decide(cameras, number, interval);
     }
     if (result == ORL_OK)
-        say_late(cameras, at, step == WAITS, now_s);
-    for (size_t i = 0; at && cameras->removes && i < cameras->count; i++)
-        for (size_t k = 0; k < at[i]; k++)
+        say_late(cameras, step == WAITS, now_s);
+    for (size_t i = 0; cameras->removes && i < cameras->count; i++)
+        for (size_t k = 0; k < cameras->cameras[i].decided; k++)
             if (!paths[i] || strcmp(paths[i], cameras->cameras[i].pictures[k].path) != 0)
                 unlink(cameras->cameras[i].pictures[k].path);
-    free(at);
     return result;
 }

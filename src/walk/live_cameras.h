@@ -16,6 +16,8 @@ struct orl_live_camera {
     // Pictures that are newer than `last`, by their numbers.
     struct orl_live_picture *pictures;
     size_t count, capacity;
+    size_t decided;                          // how many of them have been decided upon
+    const struct orl_live_picture *oldest;   // of the others, for the time step that is looked at; NULL: none
     int64_t last, newest;                    // decided upon last; ever seen; -1: none
     int64_t intervals[ORL_LIVE_INTERVALS];   // between its latest pictures
     size_t interval_count;                   // ever
