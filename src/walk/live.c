@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -24,9 +25,7 @@ enum {
 };
 
 struct camera {
-    size_t photo;  // of the scene
-    char *from;    // owned: DIR/NAME, a folder or a pipe
-    char *through; // owned: the folder that a pipe is read into; NULL: none
+    size_t photo; // of the scene
     struct orl_background background;
 };
 
@@ -35,12 +34,13 @@ struct live {
     struct orl_scene *scene; // the server's thread alone changes it
     struct camera *cameras;
     size_t camera_count;
-    const char **from, **folders; // of each camera; of its pictures
+    char **from, **folders; // owned: DIR/NAME of each camera, a folder or a pipe; where its pictures are
     struct orl_live_cameras pictures;
     struct orl_live_pipes *pipes; // NULL: cameras write into folders
     char *dir; // owned: frames/NNNNN/ of the time steps that are kept
     pthread_t thread;
     bool has_thread;
+    atomic_bool ends;        // the thread
     double first_s, last_s;  // when time steps were ready, the thread's
     size_t steps;            // of the thread
     // The server's thread:
@@ -49,7 +49,6 @@ struct live {
     size_t drawn;
 
     pthread_mutex_t lock;    // guards the rest
-    bool ends;
     int ready, taken;        // numbers of time steps; -1: none
     double ready_since;      // when its last picture came
 };
@@ -132,20 +131,12 @@ static void make_time_step(struct live *live, char *const *paths)
         remove_time_step(live, number); // a picture that cannot be read has been named
 }
 
-static bool ends(struct live *live)
-{
-    pthread_mutex_lock(&live->lock);
-    bool answer = live->ends;
-    pthread_mutex_unlock(&live->lock);
-    return answer;
-}
-
 static void *watch(void *priv)
 {
     struct live *live = priv;
     char **paths = orl_array(live->log, live->camera_count, sizeof *paths);
     enum orl_result result = paths ? ORL_OK : ORL_ERR_MEMORY;
-    while (result == ORL_OK && !ends(live)) {
+    while (result == ORL_OK && !atomic_load(&live->ends)) {
         result = orl_live_cameras_look(&live->pictures, clock_s(), paths);
         if (result == ORL_OK && paths[0])
             make_time_step(live, paths);
@@ -163,12 +154,13 @@ static void *watch(void *priv)
 static enum orl_result add_camera(struct live *live, const char *dir, size_t photo)
 {
     const struct orl_photo *p = &live->scene->photos[photo];
-    struct camera *camera = &live->cameras[live->camera_count++];
+    struct camera *camera = &live->cameras[live->camera_count];
+    char **from = &live->from[live->camera_count++];
     struct orl_image picture = {0};
     const struct orl_file_path path = orl_scene_file(live->scene, photo, ORL_FILE_BACKGROUND);
     *camera = (struct camera){.photo = photo};
-    camera->from = orl_format(live->log, "%s/%.*s", dir, (int)orl_path_stem(p->name), p->name);
-    ORL_TRY_MEMORY(camera->from);
+    *from = orl_format(live->log, "%s/%.*s", dir, (int)orl_path_stem(p->name), p->name);
+    ORL_TRY_MEMORY(*from);
     if (!p->masked || !orl_path_is_file(path.text))
         return orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
                         "place, which --live needs; import the cameras with --background",
@@ -197,29 +189,23 @@ static enum orl_result add_cameras(struct live *live, const char *dir)
 // Finds where the pictures come from, and has pipes read.
 static enum orl_result open_cameras(struct live *live)
 {
+    const char *const *from = (const char *const *)live->from;
+    const char *const *folders = (const char *const *)live->folders;
     enum orl_result result = ORL_OK;
     size_t count = live->camera_count, pipes = 0;
-    live->from = orl_array(live->log, count, sizeof *live->from);
-    live->folders = orl_array(live->log, count, sizeof *live->folders);
-    if (!live->from || !live->folders)
-        result = ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        struct camera *camera = &live->cameras[i];
-        bool is_pipe = orl_path_is_pipe(camera->from);
-        if (is_pipe)
-            camera->through = orl_format(live->log, "%s/pipes/%zu", live->dir, i);
-        if (is_pipe && !camera->through)
+        bool is_pipe = orl_path_is_pipe(from[i]);
+        live->folders[i] = is_pipe ? orl_format(live->log, "%s/pipes/%zu", live->dir, i)
+                                   : orl_strdup(live->log, from[i]);
+        if (!live->folders[i])
             result = ORL_ERR_MEMORY;
         if (i > 0 && is_pipe != (pipes > 0)) // pipes have time stamps of their own
-            result = orl_fail(live->log, ORL_ERR_DATA, "%s: some cameras have pipes, others do not",
-                              camera->from);
+            result = orl_fail(live->log, ORL_ERR_DATA, "%s: some cameras have pipes, others do not", from[i]);
         pipes += is_pipe;
-        live->from[i] = camera->from;
-        live->folders[i] = is_pipe ? camera->through : camera->from;
     }
     if (result == ORL_OK && pipes)
-        result = orl_live_pipes_start(live->log, live->from, live->folders, count, &live->pipes);
-    ORL_THEN(result, orl_live_cameras_init(live->log, live->from, live->folders, count, pipes > 0, &live->pictures));
+        result = orl_live_pipes_start(live->log, from, folders, count, &live->pipes);
+    ORL_THEN(result, orl_live_cameras_init(live->log, from, folders, count, pipes > 0, &live->pictures));
     return result;
 }
 
@@ -232,8 +218,11 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
     *live = (struct live){.log = log, .scene = scene, .ready = -1, .taken = -1};
     pthread_mutex_init(&live->lock, NULL);
     live->cameras = orl_array(log, scene->photo_count, sizeof *live->cameras);
+    live->from = orl_array(log, scene->photo_count, sizeof *live->from);
+    live->folders = orl_array(log, scene->photo_count, sizeof *live->folders);
     live->latency_ms = orl_array(log, LATENCIES, sizeof *live->latency_ms);
-    enum orl_result result = live->cameras && live->latency_ms ? ORL_OK : ORL_ERR_MEMORY;
+    bool room = live->cameras && live->from && live->folders && live->latency_ms;
+    enum orl_result result = room ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, add_cameras(live, dir));
     ORL_THEN(result, orl_dir_make_temporary(log, "live", &live->dir));
     scene->time_steps_dir = live->dir;
@@ -260,7 +249,7 @@ static void report(const struct live *live)
         const struct orl_live_camera *camera = &live->pictures.cameras[i];
         if (camera->missing || camera->late)
             orl_logf(live->log, ORL_LOG_INFO, "live: %s lacked %zu pictures that others had, and was waited "
-                     "for %zu times", live->cameras[i].from, camera->missing, camera->late);
+                     "for %zu times", live->from[i], camera->missing, camera->late);
     }
 }
 
@@ -270,9 +259,7 @@ void orl_live_stop(struct live **handle)
     if (!live)
         return;
     if (live->has_thread) {
-        pthread_mutex_lock(&live->lock);
-        live->ends = true;
-        pthread_mutex_unlock(&live->lock);
+        atomic_store(&live->ends, true);
         pthread_join(live->thread, NULL);
         report(live);
     }
@@ -281,9 +268,9 @@ void orl_live_stop(struct live **handle)
     if (live->dir && orl_dir_remove(live->log, live->dir) != ORL_OK)
         orl_logf(live->log, ORL_LOG_WARNING, "%s: stays", live->dir);
     live->scene->time_steps_dir = NULL;
-    for (size_t i = 0; live->cameras && i < live->camera_count; i++) {
-        free(live->cameras[i].from);
-        free(live->cameras[i].through);
+    for (size_t i = 0; i < live->camera_count; i++) {
+        free(live->from[i]);
+        free(live->folders[i]);
         orl_background_finish(&live->cameras[i].background);
     }
     pthread_mutex_destroy(&live->lock);
