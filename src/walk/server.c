@@ -34,7 +34,7 @@ enum {
 // A connection: a request for a file, or a client that walks.
 struct session {
     struct lws *wsi;
-    struct session *next;
+    struct lws_dll2 link; // in the list of clients that walk
     // A client that walks: its newest request, and the frame that is being sent.
     struct walk_request request;
     struct orl_choice choice; // its method and options
@@ -59,15 +59,13 @@ struct server {
     struct lws_context *context;
     char policy[1024];         // where the page and what it shows may come from
     struct lws_protocol_vhost_options headers[4]; // of every answer
-    struct session *sessions; // the sessions of clients that walk
-    size_t session_count;
+    struct lws_dll2_owner sessions; // of clients that walk
     unsigned clock;
     char token[2 * TOKEN_BYTES + 1]; // "": no token is needed
-    json_t *to_render;         // owned: what a client wants rendered; NULL: nothing
+    json_t *to_render;         // owned: what a client wants rendered, until it is; NULL: nothing
     struct orl_choice render_choice; // that client's method and options
     struct session *renders_for; // that client; NULL: it has gone
-    bool rendering;            // it is under way
-    enum orl_result result;    // the first failure while it was
+    enum orl_result result;    // the first failure
 };
 
 // --- access ---
@@ -102,15 +100,12 @@ static bool asks_from_here(const struct server *server, struct lws *wsi)
 static bool has_token(const struct server *server, struct lws *wsi)
 {
     char argument[128];
-    if (!server->token[0])
+    size_t length = strlen(server->token);
+    if (!length)
         return true;
     const char *given = lws_get_urlarg_by_name(wsi, "token=", argument, sizeof argument);
-    if (!given || strlen(given) != strlen(server->token))
-        return false;
-    unsigned char differs = 0; // constant time: the duration tells nothing about the token
-    for (size_t i = 0; server->token[i]; i++)
-        differs |= (unsigned char)(given[i] ^ server->token[i]);
-    return differs == 0;
+    // Constant time: the duration tells nothing about the token.
+    return given && strlen(given) == length && lws_timingsafe_bcmp(given, server->token, (uint32_t)length) == 0;
 }
 
 // --- files ---
@@ -121,10 +116,15 @@ static int refuse(struct lws *wsi, unsigned status)
                                                                                                   : 0;
 }
 
-static int end_file(struct lws *wsi, struct session *session)
+static void forget_file(struct session *session)
 {
     free(session->file.owned);
     session->file = (struct content_file){0};
+}
+
+static int end_file(struct lws *wsi, struct session *session)
+{
+    forget_file(session);
     return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
@@ -193,22 +193,14 @@ static int continue_file(struct lws *wsi, struct session *session)
 
 // --- clients that walk ---
 
-static void add_session(struct server *server, struct lws *wsi, struct session *session)
+static struct session *session_of(struct lws_dll2 *link)
 {
-    session->wsi = wsi;
-    session->next = server->sessions;
-    server->sessions = session;
-    server->session_count++;
+    return lws_container_of(link, struct session, link);
 }
 
 static void remove_session(struct server *server, struct session *session)
 {
-    for (struct session **at = &server->sessions; *at; at = &(*at)->next)
-        if (*at == session) {
-            *at = session->next;
-            server->session_count--;
-            break;
-        }
+    lws_dll2_remove(&session->link);
     if (server->renders_for == session)
         server->renders_for = NULL;
     free(session->frame);
@@ -244,7 +236,7 @@ static enum orl_result refuse_rendering(struct session *session, const char *pro
 // One rendering at a time; serve() begins it.
 static bool take_rendering(struct server *server, struct session *session, json_t *message)
 {
-    if (server->to_render || server->rendering)
+    if (server->to_render)
         return refuse_rendering(session, "another one is under way") == ORL_OK;
     server->to_render = json_incref(message);
     server->render_choice = session->choice;
@@ -270,33 +262,33 @@ static bool take_choice(const struct server *server, struct session *session, co
 
 // --- the published site's data, for clients that draw by themselves ---
 
-// Tells all who wait for the data, and that they need not wait any more if that is `last`.
-static enum orl_result tell_site(const struct server *server, const json_t *state, bool last)
+// Tells all who wait for the data their state, which is released, and that they need not wait any more
+// if that is `last`.
+static enum orl_result tell_site(const struct server *server, json_t *state, bool last)
 {
     enum orl_result result = state ? ORL_OK : ORL_ERR_MEMORY;
-    for (struct session *s = server->sessions; s && result == ORL_OK; s = s->next) {
+    for (struct lws_dll2 *link = server->sessions.head; link && result == ORL_OK; link = link->next) {
+        struct session *s = session_of(link);
         if (!s->asks_site)
             continue;
         result = reply(s, json_pack("{s:O}", "site", state));
         s->asks_site = !last;
     }
+    json_decref(state);
     return result;
 }
 
 static enum orl_result tell_site_ready(const struct server *server)
 {
-    json_t *state = json_pack("{s:b}", "ready", 1);
-    enum orl_result result = tell_site(server, state, true);
-    json_decref(state);
-    return result;
+    return tell_site(server, json_pack("{s:b}", "ready", 1), true);
 }
 
 static bool someone_asks_site(const struct server *server)
 {
-    const struct session *s = server->sessions;
-    while (s && !s->asks_site)
-        s = s->next;
-    return s != NULL;
+    struct lws_dll2 *link = server->sessions.head;
+    while (link && !session_of(link)->asks_site)
+        link = link->next;
+    return link != NULL;
 }
 
 // serve() begins to make the data, unless they are there.
@@ -333,9 +325,9 @@ static bool take_command(struct server *server, struct session *session)
 }
 
 // A newer request for a frame replaces an older one for which no frame has been drawn.
-static int take_message(struct server *server, struct lws *wsi, struct session *session,
-                        const char *data, size_t size)
+static int take_message(struct server *server, struct session *session, const char *data, size_t size)
 {
+    struct lws *wsi = session->wsi;
     if (lws_frame_is_binary(wsi))
         return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
     if (size > MESSAGE_MAX - session->message.size)
@@ -360,46 +352,47 @@ static int take_message(struct server *server, struct lws *wsi, struct session *
     return 0;
 }
 
-static int write_reply(struct server *server, struct lws *wsi, struct session *session)
+// Sends what has LWS_PRE bytes of room before it, and releases it. NULL: memory has run out.
+static int write_message(struct session *session, uint8_t *message, size_t size, enum lws_write_protocol kind)
 {
-    char *text = json_dumps(session->reply, JSON_COMPACT);
-    size_t size = text ? strlen(text) : 0;
-    unsigned char *data = text ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
-    json_decref(session->reply);
-    session->reply = NULL;
-    int written = -1;
-    if (data) {
-        memcpy(data + LWS_PRE, text, size);
-        written = lws_write(wsi, data + LWS_PRE, size, LWS_WRITE_TEXT);
-    }
-    free(text);
-    free(data);
-    lws_callback_on_writable(wsi);
+    int written = message ? lws_write(session->wsi, message + LWS_PRE, size, kind) : -1;
+    free(message);
+    lws_callback_on_writable(session->wsi);
     return written < 0 ? -1 : 0;
 }
 
-// Sends the frame. The next one is drawn only after this one has been handed to the network.
-static int write_frame(struct server *server, struct lws *wsi, struct session *session)
+static int write_reply(const struct server *server, struct session *session)
 {
+    char *text = json_dumps(session->reply, JSON_COMPACT);
+    size_t size = text ? strlen(text) : 0;
+    uint8_t *message = text ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
+    if (message)
+        memcpy(message + LWS_PRE, text, size);
+    free(text);
+    json_decref(session->reply);
+    session->reply = NULL;
+    return write_message(session, message, size, LWS_WRITE_TEXT);
+}
+
+// Sends the frame. The next one is drawn only after this one has been handed to the network.
+static int write_frame(const struct server *server, struct session *session)
+{
+    uint8_t *frame = session->frame;
     if (session->reply)
-        return write_reply(server, wsi, session);
-    if (!session->frame) {
-        session->sending = false;
-        return 0;
-    }
-    int written = lws_write(wsi, session->frame + LWS_PRE, session->frame_size, LWS_WRITE_BINARY);
-    free(session->frame);
+        return write_reply(server, session);
+    session->sending = frame != NULL;
     session->frame = NULL;
-    lws_callback_on_writable(wsi);
-    return written < 0 ? -1 : 0;
+    return frame ? write_message(session, frame, session->frame_size, LWS_WRITE_BINARY) : 0;
 }
 
 static struct session *longest_waiting(const struct server *server)
 {
     struct session *longest = NULL;
-    for (struct session *s = server->sessions; s; s = s->next)
+    for (struct lws_dll2 *link = server->sessions.head; link; link = link->next) {
+        struct session *s = session_of(link);
         if (s->wants && !s->sending && (!longest || s->waits_since < longest->waits_since))
             longest = s;
+    }
     return longest;
 }
 
@@ -450,23 +443,22 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
     case LWS_CALLBACK_HTTP_WRITEABLE:
         return session->file.data ? continue_file(wsi, session) : 0;
     case LWS_CALLBACK_CLOSED_HTTP:
-        free(session ? session->file.owned : NULL);
         if (session)
-            session->file = (struct content_file){0};
+            forget_file(session);
         return 0;
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
         return asks_from_here(server, wsi) && has_token(server, wsi) &&
-                       server->session_count < CLIENTS_MAX
+                       server->sessions.count < CLIENTS_MAX
                    ? 0
                    : -1;
     case LWS_CALLBACK_ESTABLISHED:
-        *session = (struct session){.choice = *server->params->choice};
-        add_session(server, wsi, session);
+        *session = (struct session){.wsi = wsi, .choice = *server->params->choice};
+        lws_dll2_add_head(&session->link, &server->sessions);
         return 0;
     case LWS_CALLBACK_RECEIVE:
-        return take_message(server, wsi, session, data, size);
+        return take_message(server, session, data, size);
     case LWS_CALLBACK_SERVER_WRITEABLE:
-        return write_frame(server, wsi, session);
+        return write_frame(server, session);
     case LWS_CALLBACK_CLOSED:
         remove_session(server, session);
         return 0;
@@ -571,13 +563,11 @@ static enum orl_result serve_once(struct server *server, bool waits)
 static void report_rendering(void *priv, size_t done, size_t total, const char *file)
 {
     struct server *server = priv;
-    enum orl_result result = server->result;
-    if (result == ORL_OK && server->renders_for)
-        result = reply(server->renders_for,
-                       json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
-                                 "total", (json_int_t)total, "file", file));
-    ORL_THEN(result, serve_once(server, false));
-    server->result = result;
+    if (server->result == ORL_OK && server->renders_for)
+        server->result = reply(server->renders_for,
+                               json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
+                                         "total", (json_int_t)total, "file", file));
+    ORL_THEN(server->result, serve_once(server, false));
 }
 
 // What a client asks for may fail without ending the server.
@@ -587,15 +577,12 @@ static void render_path(struct server *server)
         .log = server->log, .scene = server->content.scene, .renderer = server->walk.renderer,
         .render = &server->render_choice.params, .progress = server->params->progress,
         .report = report_rendering, .priv = server};
-    json_t *message = server->to_render;
-    server->to_render = NULL;
-    server->rendering = true;
-    enum orl_result result = orl_walk_rendering_run(&rendering, message);
+    enum orl_result result = orl_walk_rendering_run(&rendering, server->to_render);
     if (result != ORL_OK && server->renders_for && server->result == ORL_OK)
         server->result = refuse_rendering(server->renders_for, orl_result_message(result));
-    server->rendering = false;
     server->renders_for = NULL;
-    json_decref(message);
+    json_decref(server->to_render);
+    server->to_render = NULL;
 }
 
 // Between two photographs of the site, clients are served.
@@ -605,12 +592,8 @@ static void report_site(void *priv, const char *step, double done, double total,
     struct server *server = priv;
     (void)step;
     (void)detail;
-    json_t *state = json_pack("{s:f, s:f}", "done", done, "total", total);
-    enum orl_result result = server->result;
-    ORL_THEN(result, tell_site(server, state, false));
-    ORL_THEN(result, serve_once(server, false));
-    server->result = result;
-    json_decref(state);
+    ORL_THEN(server->result, tell_site(server, json_pack("{s:f, s:f}", "done", done, "total", total), false));
+    ORL_THEN(server->result, serve_once(server, false));
 }
 
 static bool site_cancelled(void *priv)
@@ -625,11 +608,10 @@ static void make_site(struct server *server)
     const struct orl_progress progress = {report_site, site_cancelled, server};
     enum orl_result result = orl_content_publish(&server->content, server->walk.gpu, server->walk.scene,
                                                  server->params->radiance, &progress);
-    if (server->result != ORL_OK)
-        return;
-    json_t *problem = json_pack("{s:s}", "problem", orl_result_message(result));
-    server->result = result == ORL_OK ? tell_site_ready(server) : tell_site(server, problem, true);
-    json_decref(problem);
+    if (result == ORL_OK)
+        ORL_THEN(server->result, tell_site_ready(server));
+    else
+        ORL_THEN(server->result, tell_site(server, json_pack("{s:s}", "problem", orl_result_message(result)), true));
 }
 
 static enum orl_result serve(struct server *server)
@@ -639,9 +621,7 @@ static enum orl_result serve(struct server *server)
             render_path(server);
         else if (someone_asks_site(server))
             make_site(server);
-        if (server->result == ORL_OK)
-            server->result = serve_once(server,
-                                        !server->to_render && !someone_asks_site(server));
+        ORL_THEN(server->result, serve_once(server, !server->to_render && !someone_asks_site(server)));
     }
     return server->result;
 }
