@@ -19,14 +19,6 @@ static bool is_text(const json_t *value, size_t most)
     return json_is_string(value) && json_string_length(value) <= most;
 }
 
-static bool is_one_of(const char *name, const char *const *names)
-{
-    for (; *names; names++)
-        if (strcmp(name, *names) == 0)
-            return true;
-    return false;
-}
-
 static bool read_between(const json_t *json, const char *key, double least, double most,
                          double *value)
 {
@@ -79,12 +71,13 @@ static bool is_view(const json_t *json)
 
 static bool are_modes(const json_t *modes)
 {
-    static const char *const names[] = {"walk", "fly", "orbit", NULL};
     size_t i;
     json_t *mode;
-    json_array_foreach(modes, i, mode)
-        if (!json_is_string(mode) || !is_one_of(json_string_value(mode), names))
+    json_array_foreach(modes, i, mode) {
+        const char *name = json_string_value(mode);
+        if (!name || (strcmp(name, "walk") != 0 && strcmp(name, "fly") != 0 && strcmp(name, "orbit") != 0))
             return false;
+    }
     return json_array_size(modes) > 0;
 }
 
