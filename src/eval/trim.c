@@ -53,8 +53,7 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
     enum orl_result result = orl_scene_open(s->source.log, dir, &scene);
     ORL_THEN(result, orl_renderer_create(s->source.gpu, scene, NULL, &renderer));
     ORL_THEN(result, compare_held(s, renderer, render, figures));
-    if (result == ORL_OK && s->targets.count)
-        result = orl_renderer_draw(renderer, &s->targets.views[0].view, render, NULL, NULL);
+    ORL_THEN(result, orl_renderer_draw(renderer, &s->targets.views[0].view, render, NULL, NULL));
     if (result == ORL_OK) {
         orl_trim_count_bytes(s->source.gpu, &figures->point_bytes, &figures->photo_bytes);
         for (int i = 0; i < ORL_OWNER_COUNT; i++)
@@ -92,7 +91,6 @@ static enum orl_result start(struct trim_search *s)
     ORL_TRY(orl_trim_time_first(s));
     s->now.bytes = orl_trim_model_bytes(s, s->model, &s->now.state);
     s->now.slower = 1;
-    s->trim->before.frame_ms = s->first_ms;
     return ORL_OK;
 }
 
@@ -117,10 +115,11 @@ static enum orl_result write_and_look(struct trim_search *s)
     struct orl_trim *trim = s->trim;
     trim->choice = *s->params->start;
     trim->choice.params = s->now.state.render;
+    ORL_TRY(orl_trim_write_scene(s->source.log, &s->model->scene, s->now.state.removed, &trim->choice,
+                                 s->part));
     orl_trim_model_close(&s->model); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
     ORL_TRY(look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before));
-    ORL_TRY(orl_trim_write_scene(&s->source, &s->now.state, &trim->choice, s->part));
     return look_at(s, s->part, &s->now.state.render, &trim->after);
 }
 

@@ -48,10 +48,10 @@ void orl_trim_model_close(struct trim_model **model);
 void orl_trim_count_bytes(const struct orl_gpu *gpu, size_t *points, size_t *photos);
 // Bytes of the scene's points, cameras, photographs that are not held out and their masks, on disk.
 size_t orl_trim_scene_file_bytes(const struct orl_scene *scene);
-// Writes the scene of this state to the folder `out`, drawn by the choice's method.
-enum orl_result orl_trim_write_scene(const struct trim_source *source,
-                                     const struct trim_state *state,
-                                     const struct orl_choice *choice,
+// Writes the model's scene to the folder `out`, without the photographs that `removed` marks, drawn by
+// the choice's method.
+enum orl_result orl_trim_write_scene(const struct orl_log *log, const struct orl_scene *scene,
+                                     const bool *removed, const struct orl_choice *choice,
                                      const char *out) ORL_CHECK_RESULT;
 // How the scene is drawn in this state. Texts are static or the source scene's.
 struct orl_scene_defaults orl_trim_defaults(const struct trim_source *source,

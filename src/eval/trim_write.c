@@ -13,10 +13,8 @@
 
 struct writer {
     const struct orl_log *log;
-    const struct trim_source *source;
-    const struct trim_state *state;
+    const struct orl_scene *scene; // with the points and the defaults to write
     const struct orl_choice *choice;
-    const struct trim_model *model;
     const char *out;
     bool *keep;   // owned, per photograph
     json_t *sums; // owned: checksums of the files written
@@ -48,7 +46,7 @@ size_t orl_trim_scene_file_bytes(const struct orl_scene *scene)
 // such files, as "masks", which for a time step of a sequence is in a folder as "frames/00012".
 static bool is_left_out(const struct writer *w, const char *path)
 {
-    const struct orl_scene *scene = w->source->scene;
+    const struct orl_scene *scene = w->scene;
     int folders = strncmp(path, "frames/", 7) == 0 ? 3 : 1;
     for (; folders > 0 && path; folders--) {
         path = strchr(path, '/');
@@ -74,7 +72,7 @@ static enum orl_result copy(const struct writer *w, const char *from, const char
 static enum orl_result copy_tree(const struct writer *w, const char *name)
 {
     struct orl_names names = {0};
-    char *from = orl_path_join(w->log, w->source->scene->dir, name);
+    char *from = orl_path_join(w->log, w->scene->dir, name);
     char *to = orl_path_join(w->log, w->out, name);
     enum orl_result result = from && to ? ORL_OK : ORL_ERR_MEMORY;
     bool folder = result == ORL_OK && orl_path_is_dir(from);
@@ -99,9 +97,9 @@ static enum orl_result copy_tree(const struct writer *w, const char *name)
 
 static enum orl_result write_photos(const struct writer *w)
 {
-    for (size_t i = 0; i < w->source->scene->photo_count; i++)
+    for (size_t i = 0; i < w->scene->photo_count; i++)
         if (w->keep[i])
-            ORL_TRY(copy_tree(w, ORL_PATH("images", "%s", w->source->scene->photos[i].name)));
+            ORL_TRY(copy_tree(w, ORL_PATH("images", "%s", w->scene->photos[i].name)));
     return ORL_OK;
 }
 
@@ -110,7 +108,7 @@ static enum orl_result write_photos(const struct writer *w)
 // The manifest of the whole scene. A workspace without one gets the least that a scene needs.
 static enum orl_result read_manifest(const struct writer *w, json_t **root)
 {
-    const struct orl_scene *scene = w->source->scene;
+    const struct orl_scene *scene = w->scene;
     const char *path = ORL_PATH(scene->dir, "scene.json");
     if (orl_path_is_file(path))
         return orl_json_read(w->log, path, root);
@@ -127,7 +125,7 @@ static enum orl_result read_manifest(const struct writer *w, json_t **root)
 // Lists the photographs that trimming removed under "left_out".
 static void list_left_out(const struct writer *w, json_t *root)
 {
-    const struct orl_scene *scene = w->source->scene;
+    const struct orl_scene *scene = w->scene;
     json_t *left = json_object_get(root, "left_out");
     if (!json_is_array(left)) {
         left = json_array();
@@ -145,8 +143,7 @@ static enum orl_result write_manifest(const struct writer *w)
     ORL_TRY(read_manifest(w, &root));
     const char *path = ORL_PATH(w->out, "scene.json");
     const char *method = w->choice->method->name;
-    struct orl_scene_defaults defaults = orl_trim_defaults(w->source, w->state);
-    json_t *render = orl_defaults_json(&defaults), *tuned = json_object_get(root, "tuned");
+    json_t *render = orl_defaults_json(&w->scene->defaults), *tuned = json_object_get(root, "tuned");
     json_object_set_new(render, "method", json_string(method));
     if (!json_is_object(tuned)) {
         tuned = json_object();
@@ -154,12 +151,12 @@ static enum orl_result write_manifest(const struct writer *w)
     }
     json_object_set_new(tuned, method,
                         json_pack("{s:o}", "settings",
-                                  orl_choice_settings(w->choice->method, &w->state->render)));
+                                  orl_choice_settings(w->choice->method, &w->choice->params)));
     list_left_out(w, root);
-    orl_subset_keep_photographs(w->source->scene, w->keep, root);
+    orl_subset_keep_photographs(w->scene, w->keep, root);
     json_object_set_new(json_object_get(root, "counts"), "points",
-                        json_integer((json_int_t)w->model->scene.points.count));
-    json_object_set_new(root, "trimmed_from", orl_json_string(w->source->scene->dir));
+                        json_integer((json_int_t)w->scene->points.count));
+    json_object_set_new(root, "trimmed_from", orl_json_string(w->scene->dir));
     enum orl_result result =
         json_object_set_new(root, "render", render) == 0 && json_object_set(root, "checksums", w->sums) == 0
             ? orl_json_write(w->log, path, root)
@@ -173,30 +170,24 @@ static enum orl_result write_parts(const struct writer *w)
     static const char *const trees[] = {"masks", "background", "occluders", "images_linear",
                                          "frames", "mesh.ply"};
     enum orl_result result = write_photos(w);
-    ORL_THEN(result, orl_points_write(w->log, ORL_PATH(w->out, "points.ply"), &w->model->scene.points, true, NULL));
-    ORL_THEN(result, orl_subset_write_model(w->log, w->source->scene, w->keep, w->out));
+    ORL_THEN(result, orl_points_write(w->log, ORL_PATH(w->out, "points.ply"), &w->scene->points, true, NULL));
+    ORL_THEN(result, orl_subset_write_model(w->log, w->scene, w->keep, w->out));
     ORL_THEN(result, orl_subset_add_checksums(w->log, w->out, w->sums));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(trees); i++)
         result = copy_tree(w, trees[i]);
     return result == ORL_OK ? write_manifest(w) : result;
 }
 
-enum orl_result orl_trim_write_scene(const struct trim_source *source,
-                                     const struct trim_state *state,
-                                     const struct orl_choice *choice, const char *out)
+enum orl_result orl_trim_write_scene(const struct orl_log *log, const struct orl_scene *scene,
+                                     const bool *removed, const struct orl_choice *choice,
+                                     const char *out)
 {
-    size_t count = source->scene->photo_count;
-    struct trim_model *model = NULL;
-    struct writer w = {.log = source->log, .source = source, .state = state, .choice = choice,
-                       .out = out, .sums = json_object(),
-                       .keep = orl_array(source->log, count, sizeof *w.keep)};
-    for (size_t i = 0; w.keep && i < count; i++)
-        w.keep[i] = !state->removed[i];
-    enum orl_result result = w.sums && w.keep ? orl_dir_make(w.log, out) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_trim_model_open(source, state, &model));
-    w.model = model;
+    struct writer w = {.log = log, .scene = scene, .choice = choice, .out = out, .sums = json_object(),
+                       .keep = orl_array(log, scene->photo_count, sizeof *w.keep)};
+    for (size_t i = 0; w.keep && i < scene->photo_count; i++)
+        w.keep[i] = !removed[i];
+    enum orl_result result = w.sums && w.keep ? orl_dir_make(log, out) : ORL_ERR_MEMORY;
     ORL_THEN(result, write_parts(&w));
-    orl_trim_model_close(&model);
     json_decref(w.sums);
     free(w.keep);
     return result;
