@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/vec3.h"
 #include "eval/validation.h"
 #include "render/proxy/importance.h"
 #include "scene/nearest_points.h"
@@ -43,10 +44,8 @@ static size_t neighbour(const struct orl_scene *scene, size_t photo)
     double least = INFINITY;
     size_t found = scene->photo_count;
     for (size_t i = 0; i < scene->photo_count; i++) {
-        if (i == photo || scene->photos[i].test)
-            continue;
         double apart = orl_validation_apart(scene, i, photo);
-        if (apart < least) {
+        if (i != photo && !scene->photos[i].test && apart < least) {
             least = apart;
             found = i;
         }
@@ -231,20 +230,17 @@ static void add_point(const struct orl_points *from, size_t i, const struct orl_
     sums->count++;
 }
 
-static void take_mean(const struct sums *sums, struct orl_points *to, size_t k)
+static void take_mean(struct sums *sums, struct orl_points *to, size_t k)
 {
-    double length = 0;
     if (sums->count == 0)
         return;
-    for (int c = 0; c < 3; c++)
-        length += sums->normal[c] * sums->normal[c];
-    length = sqrt(length);
+    double length = orl_normalize3(sums->normal);
     for (int c = 0; c < 3; c++) {
         to->position[k][c] += (float)(sums->along / sums->count) * to->normal[k][c];
         to->color[k][c] = (uint8_t)(sums->color[c] / sums->count + 0.5);
+        if (length > 0)
+            to->normal[k][c] = (float)sums->normal[c];
     }
-    for (int c = 0; c < 3 && length > 0; c++)
-        to->normal[k][c] = (float)(sums->normal[c] / length);
 }
 
 static enum orl_result merge_points(const struct orl_log *log, const struct orl_points *from,
