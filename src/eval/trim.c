@@ -13,6 +13,7 @@
 #include "eval/search.h"
 
 enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
+enum { DECIDING_MAX = 48 }; // targets that decide on a step; all confirm the whole
 // Least gain of a tuned option, as a share of the tolerance.
 static const double tuned_gain = 0.1;
 // Share of the time that tuning may take.
@@ -76,9 +77,11 @@ static enum orl_result start(struct trim_search *s)
     size_t n = s->targets.count;
     s->first = orl_array(source->log, n, sizeof *s->first);
     s->now.score = orl_array(source->log, n, sizeof *s->now.score);
-    s->tolerance_db = orl_trim_has_budget(s) ? INFINITY : p->tolerance_db;
-    s->tolerance_ssim = orl_trim_has_budget(s) ? INFINITY : p->tolerance_ssim;
-    s->worst_db = orl_trim_has_budget(s) ? INFINITY : p->worst_db;
+    s->deciding_count = n < DECIDING_MAX ? n : DECIDING_MAX;
+    s->validation_count = p->views && p->views < s->deciding_count ? p->views : s->deciding_count;
+    s->most = orl_trim_has_budget(s)
+                  ? (struct trim_loss){INFINITY, INFINITY, INFINITY}
+                  : (struct trim_loss){p->tolerance_db, p->tolerance_ssim, p->worst_db};
     s->first_state.render = p->start->params;
     s->first_state.removed = orl_array(source->log, photos, sizeof *s->first_state.removed);
     ORL_TRY_MEMORY(s->first && s->now.score && s->first_state.removed);
@@ -86,7 +89,6 @@ static enum orl_result start(struct trim_search *s)
     ORL_TRY(orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state));
     ORL_TRY(orl_trim_order_photos(s));
     ORL_TRY(orl_trim_model_open(source, &s->now.state, &s->model));
-    orl_trim_plan(s);
     ORL_TRY(orl_trim_measure_all(s, true, &s->trim->before));
     ORL_TRY(orl_trim_time_first(s));
     s->now.bytes = orl_trim_model_bytes(s, s->model, &s->now.state);
@@ -142,7 +144,7 @@ static void finish(struct trim_search *s)
     orl_point_ranking_finish(&s->source.ranking);
     orl_validation_finish(&s->targets);
     for (size_t i = 0; i < s->history_count; i++)
-        orl_trim_standing_finish(&s->history[i].before);
+        orl_trim_standing_finish(&s->history[i]);
     orl_trim_standing_finish(&s->now);
     free(s->history);
     free(s->order);

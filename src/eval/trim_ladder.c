@@ -13,10 +13,7 @@
 const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
     "points", "photograph", "textures", "depth", "option"};
 
-// A view is rendered from two photographs at least when it is left out itself.
-enum { TRAIN_MIN = 3 };
 enum {
-    DECIDING_MAX = 48,   // targets that decide on a step; all confirm the whole
     MENDS_MAX = 4,       // of photographs that go together
     BISECTIONS = 5,      // of points or photographs
     BUDGET_DIVIDE = 12,  // towards a budget they go in so many steps
@@ -51,19 +48,11 @@ static const struct rung ladder[] = {
 
 // --- options ---
 
-static const struct orl_render_option *option_of(const char *assignment)
-{
-    char key[64];
-    snprintf(key, sizeof key, "%.*s", (int)strcspn(assignment, "="), assignment);
-    return orl_render_option_find(key);
-}
-
 // Sets `next` to the options with this assignment. False when it changes nothing or the method does
 // not read it.
-static bool assign(const struct orl_render_params *render, const char *assignment,
-                   struct orl_render_params *next)
+static bool assign(const struct orl_render_params *render, const struct orl_render_option *option,
+                   const char *assignment, struct orl_render_params *next)
 {
-    const struct orl_render_option *option = option_of(assignment);
     *next = *render;
     if (!option || orl_render_params_set(NULL, next, assignment) != ORL_OK)
         return false;
@@ -79,22 +68,12 @@ size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t co
     return (2 * i + 1) * s->targets.count / (2 * count);
 }
 
-void orl_trim_plan(struct trim_search *s)
-{
-    size_t n = s->targets.count, views = s->params->views;
-    s->deciding_count = n < DECIDING_MAX ? n : DECIDING_MAX;
-    s->validation_count = views && views < s->deciding_count ? views : s->deciding_count;
-}
-
-// The last level that the scene and the parameters allow.
+// The last level that the scene allows.
 static size_t max_level(const struct trim_search *s, const struct rung *rung)
 {
-    size_t n = s->targets.count;
-    switch (rung->part) {
-    case ORL_TRIM_POINTS: return s->source.scene->points.count ? rung->max : 0;
-    case ORL_TRIM_PHOTOGRAPH: return n > TRAIN_MIN ? n - TRAIN_MIN : 0;
-    default: return rung->max;
-    }
+    if (rung->part == ORL_TRIM_PHOTOGRAPH)
+        return s->targets.count - ORL_VALIDATION_TRAIN_MIN;
+    return rung->part == ORL_TRIM_POINTS && !s->source.scene->points.count ? 0 : rung->max;
 }
 
 static bool has_level(const struct trim_search *s, const struct rung *rung, size_t level)
@@ -106,8 +85,7 @@ static bool has_level(const struct trim_search *s, const struct rung *rung, size
 
 static void remove_photographs(const struct trim_search *s, size_t count, struct trim_state *state)
 {
-    const struct orl_scene *scene = s->source.scene;
-    memcpy(state->removed, s->first_state.removed, scene->photo_count * sizeof *state->removed);
+    memset(state->removed, 0, s->source.scene->photo_count * sizeof *state->removed);
     state->removed_count = count;
     for (size_t k = 0; k < count; k++)
         state->removed[s->targets.views[s->order[k]].photo] = true;
@@ -174,24 +152,21 @@ static bool is_wanted(const struct trim_search *s, const struct trim_trial *t)
 
 // --- steps ---
 
-// Fewer points and smaller maps make no frame slower. What loses too much to be taken is not timed.
-static bool is_timed(const struct trim_search *s, const struct trim_trial *t, bool fits)
-{
-    bool changes = t->part == ORL_TRIM_TEXTURES || t->part == ORL_TRIM_OPTION;
-    return fits && (changes || s->params->max_frame_ms > 0);
-}
-
-// Measures the trial and takes it if it fits and is wanted.
+// Measures the trial and takes it if it fits and is wanted. What loses too much to be taken is not timed,
+// and fewer points and smaller maps make no frame slower.
 static enum orl_result decide(struct trim_search *s, struct trim_trial *t, bool shares,
                               double share, bool *taken)
 {
     *taken = false;
     ORL_TRY(orl_trim_trial_measure(s, t, shares));
     bool fits = orl_trim_trial_fits(s, t, share);
-    if (is_timed(s, t, fits))
+    bool slows = t->part == ORL_TRIM_TEXTURES || t->part == ORL_TRIM_OPTION;
+    if (fits && (slows || s->params->max_frame_ms > 0))
         ORL_TRY(orl_trim_time_trial(s, t));
     *taken = fits && is_wanted(s, t);
-    orl_trim_trial_log(s, t, *taken);
+    orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst "
+             "%.3f dB%s", t->what, t->step.db, t->step.ssim, t->now.loss.db, t->now.loss.worst_db,
+             *taken ? ": taken" : "");
     return *taken ? orl_trim_trial_take(s, t) : ORL_OK;
 }
 
@@ -230,9 +205,11 @@ static enum orl_result try_option(struct trim_search *s, const char *assignment)
 {
     struct trim_trial t;
     struct orl_render_params next;
-    const struct orl_render_option *option = option_of(assignment);
     bool taken;
-    if (!assign(&s->now.state.render, assignment, &next))
+    char key[64];
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(assignment, "="), assignment);
+    const struct orl_render_option *option = orl_render_option_find(key);
+    if (!assign(&s->now.state.render, option, assignment, &next))
         return ORL_OK;
     enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
     t.now.state.render = next;
@@ -316,13 +293,12 @@ enum orl_result orl_trim_climb(struct trim_search *s)
     s->trim->complete = true;
     if (!orl_trim_has_budget(s))
         return climb_ladder(s);
-    s->worst_db = INFINITY;
     for (double db = budget_first_db; !ends(s) && db < budget_last_db; db *= budget_growth) {
-        s->tolerance_db = db;
-        s->tolerance_ssim = ssim_per_db * db;
+        s->most.db = db;
+        s->most.ssim = ssim_per_db * db;
         ORL_TRY(climb_ladder(s));
     }
-    s->tolerance_db = s->tolerance_ssim = INFINITY; // nothing is taken back
+    s->most.db = s->most.ssim = INFINITY; // nothing is taken back
     if (s->trim->complete && !within_budget(s))
         return orl_fail(s->source.log, ORL_ERR_DATA,
                         "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
@@ -371,7 +347,7 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
     t.now.state.render = *render;
     snprintf(t.what, sizeof t.what, "tuned options");
     ORL_THEN(result, orl_trim_trial_measure(s, &t, false));
-    bool better = result == ORL_OK && t.step_db < 0 && orl_trim_trial_fits(s, &t, 1);
+    bool better = result == ORL_OK && t.step.db < 0 && orl_trim_trial_fits(s, &t, 1);
     if (better)
         result = orl_trim_time_trial(s, &t);
     if (better && result == ORL_OK && t.now.slower <= orl_trim_slow_limit(s))

@@ -73,12 +73,11 @@ enum orl_result orl_trim_order_photos(struct trim_search *s)
 
 // --- views beside photographs that go ---
 
-static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *view,
-                                 const struct trim_state *state, const bool *removed,
+static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *view, const bool *removed,
                                  struct orl_image *picture)
 {
     struct orl_frame frame = {0};
-    struct orl_render_params render = state->render;
+    struct orl_render_params render = s->now.state.render;
     render.leave_out = ~0u;
     enum orl_result result =
         orl_progress_cancelled(s->params->progress)
@@ -92,14 +91,14 @@ static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *v
 // How far a view half way to a neighbour changes when photographs go, in dB of PSNR: their squared
 // difference adds to the squared error that a rendering there has anyway, which is taken to be that
 // of the photograph's own view.
-static enum orl_result between_loss(struct trim_search *s, const struct trim_state *state,
-                                    size_t target, size_t other, double *loss_db)
+static enum orl_result between_loss(struct trim_search *s, const bool *removed, size_t target,
+                                    size_t other, double *loss_db)
 {
     const struct orl_view view = orl_view_interpolate(&s->targets.views[target].view,
                                                       &s->targets.views[other].view, 0.5);
     struct orl_image with = {0}, without = {0};
-    enum orl_result result = draw_srgb(s, &view, &s->now.state, s->first_state.removed, &with);
-    ORL_THEN(result, draw_srgb(s, &view, state, state->removed, &without));
+    enum orl_result result = draw_srgb(s, &view, NULL, &with);
+    ORL_THEN(result, draw_srgb(s, &view, removed, &without));
     if (result == ORL_OK)
         *loss_db = 10 * log10(1 + pow(10, 0.1 * (s->first[target].db -
                                                  orl_metrics_psnr_db(&with, &without))));
@@ -124,7 +123,7 @@ enum orl_result orl_trim_put_back(struct trim_search *s, struct trim_state *stat
         struct neighbours near = nearest_left(s, state->removed, i);
         for (int k = 0; k < NEAREST && loss <= between_max_db; k++)
             if (near.target[k] != i)
-                ORL_TRY(between_loss(s, state, i, near.target[k], &loss));
+                ORL_TRY(between_loss(s, state->removed, i, near.target[k], &loss));
         if (loss > between_max_db)
             put_back(state, photo);
     }
@@ -148,7 +147,7 @@ bool orl_trim_mend(const struct trim_search *s, struct trim_trial *t)
     bool mended = false;
     for (size_t v = 0; v < s->targets.count; v++) {
         size_t near = nearest_removed(s, &t->now.state, v);
-        if (near == s->targets.count || !(s->first[v].db - t->now.score[v].db > s->worst_db))
+        if (near == s->targets.count || !(s->first[v].db - t->now.score[v].db > s->most.worst_db))
             continue;
         put_back(&t->now.state, s->targets.views[near].photo);
         mended = true;

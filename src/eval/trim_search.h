@@ -9,8 +9,8 @@ struct trim_score {
     double db, ssim;
 };
 
-// What a state loses against the whole scene: means over the views measured, and the greatest loss
-// of one of them.
+// What a state loses against another: means over the views measured, and the greatest loss of one of
+// them.
 struct trim_loss {
     double db, ssim, worst_db;
 };
@@ -30,14 +30,8 @@ struct trim_trial {
     enum orl_trim_part part;
     char what[96];
     struct trim_standing now;
-    struct trim_model *own;    // NULL: the search's model serves
-    double step_db, step_ssim; // loss against the state before
-};
-
-// A step that was taken.
-struct trim_past {
-    struct trim_standing before;
-    size_t step; // index of the report's step
+    struct trim_model *own; // NULL: the search's model serves
+    struct trim_loss step;  // against the state before
 };
 
 struct trim_search {
@@ -50,12 +44,12 @@ struct trim_search {
     size_t deciding_count;   // targets that decide on it then
     size_t *order;           // owned: targets in the order in which their photographs go
     struct trim_score *first; // owned, per target: of the whole scene
-    double tolerance_db, tolerance_ssim, worst_db; // at this time; they grow towards a budget
+    struct trim_loss most; // the tolerances at this time; they grow towards a budget
     struct trim_state first_state;
     struct trim_standing now;
     struct trim_model *model; // of `now`
     double first_ms;
-    struct trim_past *history; // owned
+    struct trim_standing *history; // owned: before each of the report's steps
     size_t history_count, history_capacity;
     double start_s;
 };
@@ -65,8 +59,6 @@ struct trim_search {
 // The i-th of `count` targets, evenly chosen.
 size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count);
 bool orl_trim_has_budget(const struct trim_search *s);
-// Finds out what of the scene can be made smaller.
-void orl_trim_plan(struct trim_search *s);
 // Takes the parts one after the other, each as far as the tolerances allow; with a budget until it
 // holds.
 enum orl_result orl_trim_climb(struct trim_search *s) ORL_CHECK_RESULT;
@@ -82,6 +74,8 @@ enum orl_result orl_trim_take_options(struct trim_search *s,
 void orl_trim_standing_finish(struct trim_standing *standing);
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,
                             const struct trim_state *state);
+// The model that the trial is drawn with.
+const struct trim_model *orl_trim_trial_model(const struct trim_search *s, const struct trim_trial *t);
 // Begins a trial with the search's state, which the caller changes.
 enum orl_result orl_trim_trial_begin(struct trim_search *s, enum orl_trim_part part,
                                      struct trim_trial *t) ORL_CHECK_RESULT;
@@ -92,8 +86,6 @@ enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial 
                                        bool shares) ORL_CHECK_RESULT;
 // Whether the losses are within the tolerances, of which the step may use this share of what is left.
 bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t, double share);
-// Logs the trial.
-void orl_trim_trial_log(const struct trim_search *s, const struct trim_trial *t, bool taken);
 // The trial's state becomes the search's.
 enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t) ORL_CHECK_RESULT;
 // Measures all targets in the search's state. `first`: the whole scene, with which later states are

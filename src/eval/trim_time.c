@@ -98,7 +98,7 @@ enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)
 {
     struct orl_pair_timing timing;
     struct pair pair = {s, {{s->model->renderer, &s->now.state},
-                            {t->own ? t->own->renderer : s->model->renderer, &t->now.state}}, 0};
+                            {orl_trim_trial_model(s, t)->renderer, &t->now.state}}, 0};
     double limit = orl_trim_slow_limit(s) / s->now.slower;
     ORL_TRY(compare(&pair, limit, trial_error, ROUNDS_OF_TRIAL, &timing));
     bool same = fabs(log(timing.ratio)) <= same_errors * timing.error;
@@ -109,16 +109,13 @@ enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_trial *t)
 enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
 {
     struct trim_model *whole = NULL;
-    struct orl_pair_timing timing = {0};
+    struct orl_pair_timing timing;
     double limit = orl_trim_slow_limit(s);
-    enum orl_result result = orl_trim_model_open(&s->source, &s->first_state, &whole);
-    struct pair pair = {s, {{NULL, &s->first_state}, {s->model->renderer, &s->now.state}}, 0};
-    if (result == ORL_OK)
-        pair.drawn[0].renderer = whole->renderer;
-    ORL_THEN(result, compare(&pair, limit, 0, ROUNDS_OF_WHOLE, &timing));
+    ORL_TRY(orl_trim_model_open(&s->source, &s->first_state, &whole));
+    struct pair pair = {s, {{whole->renderer, &s->first_state}, {s->model->renderer, &s->now.state}}, 0};
+    enum orl_result result = compare(&pair, limit, 0, ROUNDS_OF_WHOLE, &timing);
     orl_trim_model_close(&whole);
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(result);
     s->trim->before.frame_ms = timing.ms;
     s->trim->after.frame_ms = timing.ratio * timing.ms;
     s->now.slower = timing.ratio;

@@ -8,17 +8,16 @@
 
 // --- figures of a state ---
 
-// PSNR and SSIM of one target in a state, the target being left out.
-static enum orl_result measure_view(struct trim_search *s, struct orl_renderer *renderer,
-                                    const struct trim_state *state, size_t view,
-                                    struct trim_score *score)
+// PSNR and SSIM of one target in the state, the target being left out.
+static enum orl_result measure_view(struct trim_search *s, const struct trim_model *model,
+                                    struct trim_standing *standing, size_t view)
 {
     struct orl_metrics m;
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
-    ORL_TRY(orl_validation_compare(s->source.log, renderer, &s->targets, view, &state->render,
-                                   state->removed, true, &m));
-    *score = (struct trim_score){m.psnr_db, m.ssim};
+    ORL_TRY(orl_validation_compare(s->source.log, model->renderer, &s->targets, view, &standing->state.render,
+                                   standing->state.removed, true, &m));
+    standing->score[view] = (struct trim_score){m.psnr_db, m.ssim};
     return ORL_OK;
 }
 
@@ -74,20 +73,23 @@ void orl_trim_trial_end(struct trim_trial *t)
     orl_trim_standing_finish(&t->now);
 }
 
-static enum orl_result measure_one(struct trim_search *s, struct trim_trial *t, size_t view)
+const struct trim_model *orl_trim_trial_model(const struct trim_search *s, const struct trim_trial *t)
 {
-    struct orl_renderer *renderer = t->own ? t->own->renderer : s->model->renderer;
-    return isnan(t->now.score[view].db)
-               ? measure_view(s, renderer, &t->now.state, view, &t->now.score[view])
-               : ORL_OK;
+    return t->own ? t->own : s->model;
+}
+
+// Measures the i-th of the targets that decide, unless that is done.
+static enum orl_result measure_deciding(struct trim_search *s, struct trim_trial *t, size_t i)
+{
+    size_t view = orl_trim_validation_view(s, i, s->deciding_count);
+    return isnan(t->now.score[view].db) ? measure_view(s, orl_trim_trial_model(s, t), &t->now, view)
+                                        : ORL_OK;
 }
 
 static void set_losses(struct trim_search *s, struct trim_trial *t)
 {
-    struct trim_loss step = loss_between(s, s->now.score, t->now.score);
+    t->step = loss_between(s, s->now.score, t->now.score);
     t->now.loss = loss_between(s, s->first, t->now.score);
-    t->step_db = step.db;
-    t->step_ssim = step.ssim;
 }
 
 // Whether a few views leave it open that all that decide allow the step.
@@ -102,32 +104,28 @@ static bool is_open(const struct trim_search *s, const struct trim_trial *t)
 enum orl_result orl_trim_trial_measure(struct trim_search *s, struct trim_trial *t, bool shares)
 {
     ORL_TRY(shares ? ORL_OK : orl_trim_model_open(&s->source, &t->now.state, &t->own));
-    const struct trim_model *model = shares ? s->model : t->own;
-    t->now.bytes = orl_trim_model_bytes(s, model, &t->now.state);
-    for (size_t i = 0; i < s->validation_count; i++) {
-        size_t deciding = (2 * i + 1) * s->deciding_count / (2 * s->validation_count);
-        ORL_TRY(measure_one(s, t, orl_trim_validation_view(s, deciding, s->deciding_count)));
-    }
+    t->now.bytes = orl_trim_model_bytes(s, orl_trim_trial_model(s, t), &t->now.state);
+    for (size_t i = 0; i < s->validation_count; i++)
+        ORL_TRY(measure_deciding(s, t, (2 * i + 1) * s->deciding_count / (2 * s->validation_count)));
     set_losses(s, t);
     for (size_t i = 0; is_open(s, t) && i < s->deciding_count; i++)
-        ORL_TRY(measure_one(s, t, orl_trim_validation_view(s, i, s->deciding_count)));
+        ORL_TRY(measure_deciding(s, t, i));
     set_losses(s, t);
     return ORL_OK;
 }
 
-bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t, double share)
+static bool is_within(const struct trim_loss *loss, const struct trim_loss *most)
 {
-    double db = s->now.loss.db + share * (s->tolerance_db - s->now.loss.db);
-    double ssim = s->now.loss.ssim + share * (s->tolerance_ssim - s->now.loss.ssim);
-    return t->now.loss.db <= fmin(db, s->tolerance_db) &&
-           t->now.loss.ssim <= fmin(ssim, s->tolerance_ssim) && t->now.loss.worst_db <= s->worst_db;
+    return loss->db <= most->db && loss->ssim <= most->ssim && loss->worst_db <= most->worst_db;
 }
 
-void orl_trim_trial_log(const struct trim_search *s, const struct trim_trial *t, bool taken)
+bool orl_trim_trial_fits(const struct trim_search *s, const struct trim_trial *t, double share)
 {
-    orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst "
-             "%.3f dB%s", t->what, t->step_db, t->step_ssim, t->now.loss.db, t->now.loss.worst_db,
-             taken ? ": taken" : "");
+    const struct trim_loss *now = &s->now.loss, *all = &s->most;
+    const struct trim_loss most = {.db = fmin(now->db + share * (all->db - now->db), all->db),
+                                   .ssim = fmin(now->ssim + share * (all->ssim - now->ssim), all->ssim),
+                                   .worst_db = all->worst_db};
+    return is_within(&t->now.loss, &most);
 }
 
 // Adds it to the report.
@@ -137,7 +135,7 @@ static enum orl_result note(struct trim_search *s, const struct trim_trial *t)
     ORL_TRY(ORL_GROW(s->source.log, trim->steps, trim->step_capacity, trim->step_count));
     struct orl_trim_step *step = &trim->steps[trim->step_count++];
     *step = (struct orl_trim_step){
-        .part = t->part, .loss_db = t->step_db, .loss_ssim = t->step_ssim, .taken = true,
+        .part = t->part, .loss_db = t->step.db, .loss_ssim = t->step.ssim, .taken = true,
         .bytes = t->now.bytes, .ms = s->first_ms * s->now.slower * t->now.slower,
         .total_loss_db = t->now.loss.db, .total_loss_ssim = t->now.loss.ssim};
     memcpy(step->what, t->what, sizeof step->what);
@@ -150,7 +148,7 @@ enum orl_result orl_trim_trial_take(struct trim_search *s, struct trim_trial *t)
 {
     ORL_TRY(note(s, t));
     ORL_TRY(ORL_GROW(s->source.log, s->history, s->history_capacity, s->history_count));
-    s->history[s->history_count++] = (struct trim_past){s->now, s->trim->step_count - 1};
+    s->history[s->history_count++] = s->now;
     t->now.slower *= s->now.slower;
     s->now = t->now;
     t->now = (struct trim_standing){0};
@@ -172,7 +170,7 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
     for (size_t i = 0; i < s->targets.count; i++) {
         orl_progress_report(s->params->progress, first ? "whole scene" : "trimmed scene",
                             (double)i, n, NULL);
-        ORL_TRY(measure_view(s, s->model->renderer, &s->now.state, i, &s->now.score[i]));
+        ORL_TRY(measure_view(s, s->model, &s->now, i));
         if (first)
             s->first[i] = s->now.score[i];
         figures->psnr_db += s->now.score[i].db / n;
@@ -182,19 +180,16 @@ enum orl_result orl_trim_measure_all(struct trim_search *s, bool first,
     figures->worst_loss_db = s->now.loss.worst_db;
     figures->points = s->model->scene.points.count;
     figures->photographs = s->targets.count - s->now.state.removed_count;
-    figures->point_bytes = s->model->point_bytes;
-    figures->photo_bytes = (size_t)orl_trim_model_bytes(s, s->model, &s->now.state) -
-                           s->model->point_bytes;
     return ORL_OK;
 }
 
 static enum orl_result take_back(struct trim_search *s)
 {
-    struct trim_past *past = &s->history[--s->history_count];
-    s->trim->steps[past->step].taken = false;
+    size_t step = --s->history_count;
+    s->trim->steps[step].taken = false;
     s->trim->undone++;
     orl_trim_standing_finish(&s->now);
-    s->now = past->before;
+    s->now = s->history[step];
     orl_trim_model_close(&s->model);
     return orl_trim_model_open(&s->source, &s->now.state, &s->model);
 }
@@ -202,9 +197,7 @@ static enum orl_result take_back(struct trim_search *s)
 enum orl_result orl_trim_confirm(struct trim_search *s)
 {
     enum orl_result result = orl_trim_measure_all(s, false, &s->trim->after);
-    while (result == ORL_OK && s->history_count > 0 &&
-           (s->now.loss.db > s->tolerance_db || s->now.loss.ssim > s->tolerance_ssim ||
-            s->now.loss.worst_db > s->worst_db)) {
+    while (result == ORL_OK && s->history_count > 0 && !is_within(&s->now.loss, &s->most)) {
         result = take_back(s);
         ORL_THEN(result, orl_trim_measure_all(s, false, &s->trim->after));
     }

@@ -277,8 +277,8 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
         struct orl_trim report = {0};
         const struct orl_trim_params params = {0};
         struct trim_search s = {.source = {.gpu = gpu, .scene = &f.scene}, .params = &params,
-                                .trim = &report, .tolerance_db = 0.5, .tolerance_ssim = 1,
-                                .worst_db = 9, .now.bytes = 100};
+                                .trim = &report, .most = {.db = 0.5, .ssim = 1, .worst_db = 9},
+                                .now.bytes = 100};
         struct trim_score first[PHOTOS_MAX] = {0};
         s.first = first;
         s.now.state.render = orl_method_find(NULL, "points")->params;
@@ -305,7 +305,7 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
         assert_float_equal(s.now.bytes, fine ? 80 : 100, 0);
         orl_trim_model_close(&s.model);
         for (size_t i = 0; i < s.history_count; i++)
-            orl_trim_standing_finish(&s.history[i].before);
+            orl_trim_standing_finish(&s.history[i]);
         free(s.history);
         orl_trim_standing_finish(&s.now);
         orl_validation_finish(&s.targets);
