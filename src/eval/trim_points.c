@@ -22,9 +22,12 @@ static const double growth_max = 1.5;
 
 // --- the views ---
 
-struct views {
-    struct orl_view *items; // owned
-    size_t count;
+struct ranker {
+    struct orl_view *views; // owned
+    size_t view_count;
+    struct orl_nearest_points *drawn; // owned, one for each view
+    uint8_t *level;                   // owned, per point: 1 + the last of pixel_sides; 0: never
+    struct orl_point_ranking *ranking;
 };
 
 static struct orl_view drawn_size(const struct orl_view *view)
@@ -54,46 +57,37 @@ static size_t neighbour(const struct orl_scene *scene, size_t photo)
 }
 
 static enum orl_result choose_views(const struct orl_log *log, const struct orl_scene *scene,
-                                    size_t most, struct views *views)
+                                    size_t most, struct ranker *r)
 {
-    views->count = 0;
-    views->items = orl_array(log, most + 1, sizeof *views->items);
-    ORL_TRY_MEMORY(views->items);
+    r->views = orl_array(log, most + 1, sizeof *r->views);
+    ORL_TRY_MEMORY(r->views);
     for (size_t i = 0; i < scene->photo_count; i++) {
         if (!orl_heldout_chosen(scene, false, (most + 1) / 2, i))
             continue;
         struct orl_view view = drawn_size(&scene->photos[i].view);
         size_t other = neighbour(scene, i);
-        views->items[views->count++] = view;
+        r->views[r->view_count++] = view;
         if (other < scene->photo_count)
-            views->items[views->count++] =
-                orl_view_interpolate(&view, &scene->photos[other].view, 0.5);
+            r->views[r->view_count++] = orl_view_interpolate(&view, &scene->photos[other].view, 0.5);
     }
     return ORL_OK;
 }
 
 // --- the ranking ---
 
-struct ranker {
-    struct orl_nearest_points *drawn; // owned, one for each view
-    uint8_t *level;                   // owned, per point: 1 + the last of pixel_sides; 0: never
-    struct orl_point_ranking *ranking;
-};
-
 static enum orl_result draw_views(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                  const struct views *views, const struct orl_progress *progress,
-                                  struct ranker *r)
+                                  const struct orl_progress *progress, struct ranker *r)
 {
     struct orl_importance *importance = NULL;
-    r->drawn = orl_array(orl_gpu_log(gpu), views->count, sizeof *r->drawn);
+    r->drawn = orl_array(orl_gpu_log(gpu), r->view_count, sizeof *r->drawn);
     enum orl_result result = r->drawn ? orl_importance_create(gpu, scene, &importance)
                                       : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < views->count; i++) {
+    for (size_t i = 0; result == ORL_OK && i < r->view_count; i++) {
         struct orl_nearest_points *drawn = &r->drawn[i];
-        orl_progress_report(progress, "points", (double)i, (double)views->count, NULL);
+        orl_progress_report(progress, "points", (double)i, (double)r->view_count, NULL);
         result = orl_progress_cancelled(progress)
                      ? ORL_ERR_CANCELLED
-                     : orl_importance_draw(importance, &views->items[i], drawn);
+                     : orl_importance_draw(importance, &r->views[i], drawn);
         for (size_t k = 0;
              result == ORL_OK && k < (size_t)drawn->width * (size_t)drawn->height; k++)
             if (drawn->point[k] != UINT32_MAX)
@@ -172,7 +166,6 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
                                        struct orl_point_ranking *ranking)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    struct views views = {0};
     struct ranker r = {.ranking = ranking};
     size_t count = scene->points.count;
     *ranking = (struct orl_point_ranking){.count = count};
@@ -181,16 +174,16 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
     r.level = orl_array(log, count, sizeof *r.level);
     enum orl_result result =
         ranking->order && ranking->pixels && r.level ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, choose_views(log, scene, max_views, &views));
-    ORL_THEN(result, draw_views(gpu, scene, &views, progress, &r));
-    for (size_t i = 0; result == ORL_OK && i < views.count; i++)
+    ORL_THEN(result, choose_views(log, scene, max_views, &r));
+    ORL_THEN(result, draw_views(gpu, scene, progress, &r));
+    for (size_t i = 0; result == ORL_OK && i < r.view_count; i++)
         set_levels(&r, &r.drawn[i]);
     ORL_THEN(result, sort(log, &r));
-    for (size_t i = 0; r.drawn && i < views.count; i++)
+    for (size_t i = 0; r.drawn && i < r.view_count; i++)
         orl_nearest_points_finish(&r.drawn[i]);
     free(r.drawn);
     free(r.level);
-    free(views.items);
+    free(r.views);
     if (result != ORL_OK)
         orl_point_ranking_finish(ranking);
     return result;
