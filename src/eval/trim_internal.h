@@ -12,8 +12,9 @@ extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
 
 // What is left of a scene.
 struct trim_state {
-    // How small each part is; 0: as in the scene. Of textures an enum orl_textures. So many of the
-    // photographs in the search's order were to go; few may have come back.
+    // How small each part is; 0: as in the scene. Of textures an enum orl_textures; of depth maps n for
+    // half floats at 1/n of the size. So many of the photographs in the search's order were to go; few may
+    // have come back.
     size_t level[ORL_TRIM_PART_COUNT];
     struct orl_render_params render;
     bool *removed; // owned, per photograph

@@ -9,11 +9,6 @@ const double orl_trim_point_shares[TRIM_POINT_LEVELS] = {
     1,    0.9,  0.8, 0.72, 0.65,  0.57, 0.5, 0.45, 0.4,  0.36, 0.32, 0.28, 0.25,
     0.22, 0.2, 0.18, 0.16, 0.14, 0.125, 0.11, 0.1, 0.09, 0.08, 0.07, 0.0625};
 
-static const struct {
-    int divide;
-    bool half;
-} depth_levels[TRIM_DEPTH_LEVELS] = {{1, false}, {1, true}, {2, true}, {3, true}, {4, true}};
-
 enum orl_result orl_trim_state_copy(const struct orl_log *log, const struct trim_state *from,
                                     size_t photo_count, struct trim_state *to)
 {
@@ -32,9 +27,9 @@ struct orl_scene_defaults orl_trim_defaults(const struct trim_source *source,
     struct orl_scene_defaults defaults = source->scene->defaults;
     if (state->level[ORL_TRIM_TEXTURES] != ORL_TEXTURES_AUTO)
         defaults.textures = (char *)orl_textures_names[state->level[ORL_TRIM_TEXTURES]];
-    if (state->level[ORL_TRIM_DEPTH]) {
-        int divide = depth_levels[state->level[ORL_TRIM_DEPTH]].divide;
-        defaults.depth_half = depth_levels[state->level[ORL_TRIM_DEPTH]].half;
+    int divide = (int)state->level[ORL_TRIM_DEPTH];
+    if (divide > 0) {
+        defaults.depth_half = true;
         defaults.depth_divide = defaults.depth_divide > divide ? defaults.depth_divide : divide;
     }
     return defaults;

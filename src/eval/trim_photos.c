@@ -30,15 +30,15 @@ static struct neighbours nearest_left(const struct trim_search *s, const bool *r
         if (i == target || removed[s->targets.views[i].photo])
             continue;
         double d = apart(s, target, i);
-        int last = d < distance[0] ? 0 : 1;
-        if (d >= distance[1])
-            continue;
-        if (last == 0) {
+        if (d < distance[0]) {
             distance[1] = distance[0];
             n.target[1] = n.target[0];
+            distance[0] = d;
+            n.target[0] = i;
+        } else if (d < distance[1]) {
+            distance[1] = d;
+            n.target[1] = i;
         }
-        distance[last] = d;
-        n.target[last] = i;
     }
     n.sum = distance[0] + distance[1];
     return n;
