@@ -50,7 +50,7 @@
         "Photographs are brought to one exposure and white balance, and their vignetting is " \
         "undone. Radiance is always aligned.") \
     CHOICE(antialias, orl_antialias, "off on", ORL_ANTIALIAS_OFF, "sample=srgb", \
-        "Colours are averaged across depth discontinuities, as a camera does.") \
+        "Colours are averaged across depth discontinuities, as a camera does, and specks take the colour around them.") \
     CHOICE(median, orl_median, "off holes all", ORL_MEDIAN_OFF, "paint=gather", \
         "A median filter of the painted picture, over 3x3 pixels of it all, or over the 5x5 " \
         "neighbours of surfaces that no photograph painted (`holes`).") \

@@ -15,8 +15,12 @@
 // From this width on, in pixels, the variance is that of a bilinear sample or more.
 const float AREA_FROM = 1.73205;
 
-// plain: the sample before the blur is undone; the same sample where a pixel of the view covers more.
-vec4 bicubic(vec2 pixel, float slot, vec2 size, float mip, out vec4 plain)
+struct filtered {
+    vec4 sharp, plain; // plain: before the blur is undone; the same where a pixel of the view covers more
+    float varies;      // how much the photograph varies from one pixel of the view to the next; 1: unknown
+};
+
+filtered bicubic(vec2 pixel, float slot, vec2 size, float mip)
 {
     bool covers_more = exp2(mip) >= AREA_FROM;
     float lod = max(floor(mip) - 1.0, 0.0), width = exp2(mip - lod);
@@ -28,6 +32,10 @@ vec4 bicubic(vec2 pixel, float slot, vec2 size, float mip, out vec4 plain)
     vec4 middle = photo_texel(at * texel, slot, lod);
     vec4 left = photo_texel((at - one) * texel, slot, lod), right = photo_texel((at + one) * texel, slot, lod);
     vec4 up = photo_texel((at - other) * texel, slot, lod), down = photo_texel((at + other) * texel, slot, lod);
-    plain = covers_more ? stored_mean(left, right, up, down) : middle;
-    return max(plain - blur.x * (left + right - 2.0 * middle) - blur.y * (up + down - 2.0 * middle), 0.0);
+    vec4 plain = covers_more ? stored_mean(left, right, up, down) : middle;
+    vec4 sharp = max(plain - blur.x * (left + right - 2.0 * middle) - blur.y * (up + down - 2.0 * middle), 0.0);
+    vec3 differ = max(max(max(left, right), max(up, down)), middle).rgb - min(min(min(left, right), min(up, down)), middle).rgb;
+    // Where a pixel of the view covers more, all samples lie within it, and nothing is known.
+    float varies = covers_more ? 1.0 : width * max(max(differ.r, differ.g), differ.b);
+    return filtered(sharp, plain, varies);
 }

@@ -70,7 +70,8 @@ float sight_weight(ranking r, int k)
 struct samples {
     vec4 shown[KEPT];
     float weight[KEPT];
-    vec4 detail; // of the best one
+    vec4 detail;  // of the best one
+    float varies; // the best one, about the place
 };
 
 // Colour, and 1 if there is a sample; luma: the mean of w of what is shown; blur: for estimated depth. Samples far from

@@ -89,11 +89,11 @@ vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 
 #include "gather/bicubic.glsl"
 
-// plain: what bicubic() says.
-vec4 photo_bicubic(photo source, vec2 pixel, float mip, out vec4 plain)
+filtered photo_bicubic(photo source, vec2 pixel, float mip)
 {
-    vec4 texel = bicubic(pixel, source.gain.w, slot_size.xy, mip, plain);
+    filtered texel = bicubic(pixel, source.gain.w, slot_size.xy, mip);
     float level = floor(mip + 0.5);
-    plain = photo_complete(plain, pixel, source.gain.w, level);
-    return photo_complete(texel, pixel, source.gain.w, level);
+    texel.plain = photo_complete(texel.plain, pixel, source.gain.w, level);
+    texel.sharp = photo_complete(texel.sharp, pixel, source.gain.w, level);
+    return texel;
 }

@@ -36,10 +36,14 @@ float surface_penalty(float penalty)
 void look(ranking r, int k, inout samples to)
 {
     sight one = r.of[k];
-    to.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, to.detail);
+    to.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, to.detail, to.varies);
     to.weight[k] = sight_weight(r, k);
 }
 
+#ifdef SPECKS
+#include "edges/speck.glsl"
+layout(rg8, binding = 5) writeonly uniform image2D specks; // how much the best photograph varies, light
+#endif
 #ifdef SOFT
 layout(r16f, binding = 4) writeonly uniform image2D soft_luma; // blended; < 0: there is none
 #endif
@@ -67,15 +71,23 @@ void main()
             rank(consider(i, source, spots[k]), c, rankings[k]);
     }
     float lumas[4];
+#ifdef SPECKS
+    float varies[4], light[4]; // light: 0 where nothing is painted
+#endif
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
         samples from;
         from.detail = vec4(0.0);
+        from.varies = 0.0;
         for (int n = 0; n < KEPT; n++)
             look(rankings[k], n, from);
         colors[k] = blend(spots[k], rankings[k], from, lumas[k], own);
+#ifdef SPECKS
+        varies[k] = from.varies;
+        light[k] = colors[k].a > 0.0 ? max(speck_light(colors[k].rgb), 1.0 / 255.0) : 0.0;
+#endif
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
         seed += colors[k] * (is_guess(spots[k]) ? 1.0 : ORL_SURFACE_SEED);
         guess += guessed;
@@ -95,6 +107,10 @@ void main()
     // lie outside the picture do nothing.
     for (int k = 0; k < 4; k++)
         imageStore(painted, corner + ivec2(k & 1, k >> 1), colors[k]);
+#ifdef SPECKS
+    for (int k = 0; k < 4; k++)
+        imageStore(specks, corner + ivec2(k & 1, k >> 1), vec4(varies[k], light[k], 0.0, 0.0));
+#endif
 #ifdef SOFT
     for (int k = 0; k < 4; k++)
         imageStore(soft_luma, corner + ivec2(k & 1, k >> 1), vec4(lumas[k]));

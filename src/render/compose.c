@@ -73,6 +73,7 @@ const struct post_pass orl_post_passes[] = {
     {"soften", softens, orl_soften_prepare},
     {"compose", NULL, compose},
     {"median", takes_median, median},
+    {"specks", orl_edges_find_specks, orl_edges_remove_specks},
     {"antialias", antialiases, orl_edges_antialias},
     {0},
 };

@@ -65,6 +65,7 @@ static struct orl_render_params with_depths(float depths)
 {
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.guess_depths = depths;
+    params.antialias = ORL_ANTIALIAS_OFF; // specks stay
     return params;
 }
 

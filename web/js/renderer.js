@@ -38,7 +38,7 @@ function makePrograms(device, sources, manifest, planes)
         gatherSharp: late("gather.frag", {...asks, BICUBIC: 1, ...(manifest.soft && {SOFT: 1})}),
         soft: late("soft.frag", {}, "soft.vert"), keep: late("keep.frag"),
         keepSrgb: late("keep.frag", {SRGB: 1}), keepLuma: late("keep.frag", {LUMA: 1}),
-        softCompare: late("soft_compare.frag"), softMix: late("soft_mix.frag"),
+        specks: late("specks.frag"), softCompare: late("soft_compare.frag"), softMix: late("soft_mix.frag"),
         guessCost: late("guess_cost.frag", tries), guessPick: late("guess_pick.frag", tries),
         guessApply: late("guess_apply.frag"),
     };
@@ -98,6 +98,14 @@ class Frame {
         this.guesses = this.withLevels("RGBA16F", w, h);
         this.seeds = make(w, h, [this.fillColor.pulled[0].textures[0], this.guesses]);
         this.composed = make(width, height, ["RGBA16F"]);
+    }
+
+    // The picture without specks, for views at rest.
+    get kept()
+    {
+        if (!this.keptTarget)
+            this.targets.push(this.keptTarget = this.device.target(this.width, this.height, ["RGBA16F"]));
+        return this.keptTarget;
     }
 
     withLevels(format, width, height)
@@ -191,6 +199,8 @@ export class Renderer {
         const photos = pointsOnly ? [] : this.gather(camera, o, whole);
         this.used = photos.length;
         this.compose(pointsOnly);
+        if (whole && photos.length && !this.manifest.radiance)
+            this.removeSpecks();
         if (whole && this.soft && photos.length && photos.every(photo => photo.hasSoft))
             this.correct(camera, o, photos);
     }
@@ -341,6 +351,14 @@ export class Renderer {
         this.device.pass(this.programs.compose, f.composed,
                          {...colors, far: false, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
         this.finished = f.composed.textures[0];
+        this.corrected = false;
+    }
+
+    removeSpecks()
+    {
+        const f = this.frame;
+        this.device.pass(this.programs.specks(), f.kept, {composed: this.finished, source: f.painted.textures[1]});
+        this.finished = f.kept.textures[0];
     }
 
     // By soft splats, as src/render/paint/soft_layer.c does. What is corrected is antialiased.
@@ -350,7 +368,7 @@ export class Renderer {
         const values = {mean_level: coarseLevel(camera, photos, this.shared.ORL_SOFT_COARSE),
                         correct_share: o.soft, mix_share: o.soft_mix,
                         blended: blended.textures[0], differs: differs.textures[0], source: f.painted.textures[1],
-                        composed: f.composed.textures[0], depth: this.depth.textures[0],
+                        composed: this.finished, depth: this.depth.textures[0],
                         footprint: this.values.footprint};
         this.soft.draw(this.programs.soft(), blended, camera);
         this.device.makeLevels(values.blended);
@@ -358,6 +376,7 @@ export class Renderer {
         this.device.makeLevels(values.differs);
         this.device.pass(this.programs.softMix(), mixed, values);
         this.finished = mixed.textures[0];
+        this.corrected = true;
     }
 
     // The last frame onto a place of its size: the canvas, or {fbo, x, y, width, height}, whose first row is the lowest.
@@ -373,7 +392,7 @@ export class Renderer {
                           normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
                           exposure: this.exposure, tone: this.tone,
-                          footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance && this.finished === f.composed.textures[0]});
+                          footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance && !this.corrected});
     }
 
     // A frame of its own as RGBA bytes, top row first.

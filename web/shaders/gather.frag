@@ -10,7 +10,8 @@ uniform sampler2D view_depth; // < 0: guessed
 uniform highp usampler2D tiles; // choose.frag
 uniform float away; // 1, but less near the place of a photograph that shows what all together give
 layout(location = 0) out vec4 painted; // shared/pixel.glsl, finished
-// r, g: number of the best photograph, high and low byte; b: SOFT: luma of soft splats in the photographs; a: 1
+// r, g: number of the best photograph, high and low byte; b: SOFT: luma of soft splats in the photographs;
+// a: 0: nothing, else a half and half of how much that photograph varies about the place
 layout(location = 1) out vec4 source;
 
 float surface_share(photo source, spot s, vec4 seen, float z)
@@ -45,12 +46,13 @@ void main()
     }
     samples from;
     from.detail = vec4(0.0);
+    from.varies = 0.0;
     for (int k = 0; k < KEPT; k++) {
         sight one = r.of[k];
         from.weight[k] = sight_weight(r, k);
         from.shown[k] = vec4(0.0);
         if (from.weight[k] > 0.0)
-            from.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, from.detail);
+            from.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, from.detail, from.varies);
     }
     float luma, blur;
     vec4 color = blend(s, r, from, luma, blur);
@@ -58,7 +60,7 @@ void main()
         return;
     painted = guessed && blur > 0.0 ? pixel_to_blur(color.rgb, blur) : pixel_finished(color.rgb, !guessed);
     float number = photo_at(r.of[0].index).file.x;
-    source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 1.0);
+    source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 0.5 + 0.5 * from.varies);
 #ifdef SOFT
     source.b = luma;
 #endif

@@ -49,5 +49,5 @@ void main()
     else if (layer == 3)
         color.rgb = texelFetch(composed, at, 0).a > 0.5 ? plain : mix(plain, vec3(0.9, 0.2, 0.1), 0.6);
     else if (layer == 4)
-        color.rgb = from.a > 0.5 ? mix(distinct(round(from.r * 255.0) * 256.0 + round(from.g * 255.0)), plain, 0.4) : plain * 0.3;
+        color.rgb = from.a > 0.0 ? mix(distinct(round(from.r * 255.0) * 256.0 + round(from.g * 255.0)), plain, 0.4) : plain * 0.3;
 }

@@ -18,7 +18,7 @@ const float SHARPEN_MAX = 1.5;
 // limited to a factor.
 vec3 photo_sharper(photo source, vec2 pixel, float mip, vec3 color)
 {
-    vec4 plain, texel = photo_bicubic(source, pixel, mip, plain);
+    vec4 texel = photo_bicubic(source, pixel, mip).sharp;
     if (!(texel.a > 1e-8))
         return color;
     vec3 sharper = texel.rgb / (ORL_RADIANCE_SCALE * texel.a) * source.gain.rgb;

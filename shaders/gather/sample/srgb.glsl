@@ -29,7 +29,7 @@ vec4 photo_filtered(photo source, vec2 pixel, float mip)
 {
     // Each filter is a program of its own, since software renderers run both sides of a condition.
 #ifdef BICUBIC
-    vec4 plain, texel = photo_bicubic(source, pixel, mip, plain);
+    vec4 texel = photo_bicubic(source, pixel, mip).sharp;
 #else
     // Mip levels are interpolated only in a narrow range, where a software renderer reads two
     // levels.
@@ -48,18 +48,19 @@ vec4 photo_sample(photo source, vec2 pixel, float mip)
 }
 
 // The sample of the k-th best photograph, from 0, and w of photo_texel. The best one is read with the filter that is
-// asked for, the others with one fetch. detail: set for k = 0 to what the bicubic filter adds, as a share of the sample
-// without it.
-vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail)
+// asked for, the others with one fetch. Set for k = 0 with the bicubic filter: detail, what it adds, as a share of the
+// sample without it; varies, how much the photograph varies about the place.
+vec4 photo_ranked(photo source, int k, vec2 pixel, float mip, inout vec4 detail, inout float varies)
 {
 #ifdef BICUBIC
     if (k > 0) { // the level whose bilinear sample is about as wide as a pixel of the view: see AREA_FROM
         vec4 texel = photo_bilinear(source, pixel, floor(max(mip - 0.3, 0.0)));
         return vec4(photo_light(source, pixel, texel.rgb), texel.a);
     }
-    vec4 plain, sharp = photo_bicubic(source, pixel, mip, plain);
-    plain.rgb = stored_light(plain.rgb);
-    sharp.rgb = stored_light(sharp.rgb);
+    filtered texel = photo_bicubic(source, pixel, mip);
+    vec4 plain = vec4(stored_light(texel.plain.rgb), texel.plain.a);
+    vec4 sharp = vec4(stored_light(texel.sharp.rgb), texel.sharp.a);
+    varies = texel.varies;
     detail = (sharp - plain) / max(plain, 1e-9);
     return vec4(photo_aligned(source, pixel, sharp.rgb), sharp.a);
 #else

@@ -5,12 +5,13 @@
 
 enum {
     LIST = 2,     // storage binding of shaders/edges/edge_list.glsl
-    GROUPS = 256, // that work on the list: the host does not know how long it is
+    GROUPS = 64, // that work on the list: the host does not know how long it is
 };
 
 void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)
 {
     orl_buf_destroy(gpu, &edges->list);
+    orl_tex_destroy(gpu, &edges->painted);
     edges->width = edges->height = 0;
 }
 
@@ -44,18 +45,39 @@ static void list(const struct frame *frame, struct orl_prog *find, struct orl_di
     d->groups[1] = 1;
 }
 
+// Runs `file` over the list that is in `d`, and then over the picture with what it has written there.
+static void apply(const struct frame *frame, const char *file, struct orl_dispatch d)
+{
+    bool half = frame->picture->params.format == GL_RGBA16F;
+    d.images[0] = (struct orl_image_binding){frame->picture, 0, GL_READ_WRITE};
+    d.prog = orl_prog_get(frame->gpu, file, NULL, half ? "HALF" : NULL);
+    orl_gpu_dispatch(frame->gpu, &d);
+    d.prog = orl_prog_get(frame->gpu, file, NULL, half ? "WRITE 1\nHALF" : "WRITE");
+    orl_gpu_dispatch(frame->gpu, &d);
+}
+
+bool orl_edges_find_specks(const struct frame *frame)
+{
+    return frame->finishes && frame->params->antialias == ORL_ANTIALIAS_ON &&
+           frame->params->sampling == ORL_SAMPLING_BICUBIC;
+}
+
+void orl_edges_remove_specks(const struct frame *frame)
+{
+    struct image_block block = {.image_size = {frame->surface.width, frame->surface.height}};
+    struct orl_dispatch d = {.params = &block, .params_size = sizeof block,
+                             .images = {{frame->paint->edges.painted, 0, GL_READ_ONLY},
+                                        {frame->paint->edges.painted, 0, GL_READ_ONLY}}};
+    list(frame, orl_prog_get(frame->gpu, "edges/specks_find.comp", NULL, NULL), &d);
+    apply(frame, "edges/specks.comp", d);
+}
+
 void orl_edges_antialias(const struct frame *frame)
 {
-    struct orl_gpu *gpu = frame->gpu;
-    bool half = frame->picture->params.format == GL_RGBA16F;
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
                                 .footprint = (float)orl_frame_footprint(frame)};
     struct orl_dispatch d = {.params = &block, .params_size = sizeof block,
                              .images = {{frame->surface.depth, 0, GL_READ_ONLY}}};
-    list(frame, orl_prog_get(gpu, "edges/antialias_find.comp", NULL, NULL), &d);
-    d.images[0] = (struct orl_image_binding){frame->picture, 0, GL_READ_WRITE};
-    d.prog = orl_prog_get(gpu, "edges/antialias.comp", NULL, half ? "HALF" : NULL);
-    orl_gpu_dispatch(gpu, &d);
-    d.prog = orl_prog_get(gpu, "edges/antialias.comp", NULL, half ? "WRITE 1\nHALF" : "WRITE");
-    orl_gpu_dispatch(gpu, &d);
+    list(frame, orl_prog_get(frame->gpu, "edges/antialias_find.comp", NULL, NULL), &d);
+    apply(frame, "edges/antialias.comp", d);
 }

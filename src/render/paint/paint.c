@@ -35,6 +35,8 @@ enum orl_result orl_paint_resize(const struct frame *frame)
     ORL_THEN(result, orl_soften_resize(frame->gpu, &paint->soften, width, height));
     if (result == ORL_OK && !frame->radiance)
         result = orl_edges_resize(frame->gpu, &paint->edges, width, height);
+    ORL_THEN(result, orl_frame_target(frame, "what may be specks", orl_edges_find_specks(frame), GL_RG8,
+                                      &paint->edges.painted));
     if (result == ORL_OK && frame->finishes)
         result = orl_guess_resize(frame, &paint->guess);
     ORL_THEN(result, orl_frame_target(frame, "accumulated trust", frame->radiance, GL_RGBA32F,

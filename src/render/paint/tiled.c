@@ -32,12 +32,15 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     struct gather_slots slots;
     orl_gather_slots(frame, &slots);
     // The number of photographs is part of the program, so that none is sampled in vain.
-    snprintf(defines, sizeof defines, "%s%sKEPT %d", rest_define(frame),
+    bool specks = orl_edges_find_specks(frame);
+    snprintf(defines, sizeof defines, "%s%s%sKEPT %d", rest_define(frame), specks ? "SPECKS 1\n" : "",
              frame->soft ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
     d.images[3] = (struct orl_image_binding){frame->paint->soften.guesses, 0, GL_WRITE_ONLY};
+    if (specks)
+        d.images[5] = (struct orl_image_binding){frame->paint->edges.painted, 0, GL_WRITE_ONLY};
     if (frame->soft) {
         d.textures[ORL_PHOTO_SOFT] = frame->photos->soft;
         d.images[4] = (struct orl_image_binding){frame->soft->gathered, 0, GL_WRITE_ONLY};
@@ -59,6 +62,8 @@ static enum orl_result paint_chosen(const struct frame *frame)
     ORL_TRY(make_lists(frame, across * down, (size_t)groups[0] * groups[1]));
     if (frame->chosen_count == 0 && !frame->progressive) {
         orl_tex_clear(frame->picture, 0);
+        if (orl_edges_find_specks(frame))
+            orl_tex_clear(frame->paint->edges.painted, 0);
         return ORL_OK;
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);

@@ -66,7 +66,7 @@ vec4 photo_bilinear(photo source, vec2 pixel, float mip)
 
 #include "gather/bicubic.glsl"
 
-vec4 photo_bicubic(photo source, vec2 pixel, float mip, out vec4 plain)
+filtered photo_bicubic(photo source, vec2 pixel, float mip)
 {
-    return bicubic(pixel, source.eye.w, slot_size, mip, plain);
+    return bicubic(pixel, source.eye.w, slot_size, mip);
 }
