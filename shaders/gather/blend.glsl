@@ -71,7 +71,7 @@ struct samples {
     vec4 shown[KEPT];
     float weight[KEPT];
     vec4 detail;  // of the best one
-    float varies; // the best one, about the place
+    float varies; // how much the best one varies about its place
 };
 
 // Colour, and 1 if there is a sample; luma: the mean of w of what is shown; blur: for estimated depth. Samples far from

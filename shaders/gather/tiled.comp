@@ -42,7 +42,7 @@ void look(ranking r, int k, inout samples to)
 
 #ifdef SPECKS
 #include "edges/speck.glsl"
-layout(rg8, binding = 5) writeonly uniform image2D specks; // how much the best photograph varies, light
+layout(rg8, binding = 5) writeonly uniform image2D specks; // as struct edges has it
 #endif
 #ifdef SOFT
 layout(r16f, binding = 4) writeonly uniform image2D soft_luma; // blended; < 0: there is none

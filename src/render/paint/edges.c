@@ -5,7 +5,7 @@
 
 enum {
     LIST = 2,     // storage binding of shaders/edges/edge_list.glsl
-    GROUPS = 64, // that work on the list: the host does not know how long it is
+    GROUPS = 64,  // that work on the list: the host does not know how long it is
 };
 
 void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)

@@ -7,7 +7,7 @@
 struct edges {
     struct orl_buf *list;  // shaders/edges/edge_list.glsl
     int width, height;     // of the pictures that it is made for
-    struct orl_tex *painted; // RG8: how much the best photograph of a pixel varies about its place, fourth root of light
+    struct orl_tex *painted; // RG8, of each pixel: how much its best photograph varies there; fourth root of light
 };
 
 // Allocates for pictures of this size. Does nothing if the size is unchanged.
