@@ -2,7 +2,7 @@
 // for the page: the least cost of a path of open cells that ends at a cell and a plane.
 #include "guess/planes.glsl"
 
-const float STEP = 0.2; // cost of a step to another plane
+const float STEP = 0.4; // cost of a step to another plane
 
 // Takes a path on to a cell with these costs of its planes. path: its least cost at each plane; least: of
 // all planes. Behind a closed cell it begins anew.
