@@ -15,11 +15,9 @@
 
 void orl_known_cameras_finish(struct orl_known_cameras *known)
 {
-    if (!known)
-        return;
     orl_colmap_finish(&known->model);
     free(known->gaps);
-    for (size_t i = 0; known->pictures && i < known->picture_count; i++) {
+    for (size_t i = 0; i < known->picture_count; i++) {
         free(known->pictures[i].path);
         free(known->pictures[i].mask);
     }
@@ -275,19 +273,17 @@ enum orl_result orl_known_name_images(const struct orl_log *log, const char *fil
 {
     struct orl_colmap_model *model = &known->model;
     bool alike = false;
-    enum orl_result result = any_alike(log, known, &alike);
-    size_t common = result == ORL_OK && alike ? common_folders(known) : 0;
-    for (size_t i = 0; result == ORL_OK && i < known->picture_count; i++) {
+    ORL_TRY(any_alike(log, known, &alike));
+    size_t common = alike ? common_folders(known) : 0;
+    for (size_t i = 0; i < known->picture_count; i++) {
         const char *path = known->pictures[i].path;
-        char *name = orl_strdup(log, alike ? path + common : orl_path_name(path));
-        model->images[i].name = name;
-        const char *problem = name ? orl_colmap_name_problem(name) : NULL;
-        if (!name)
-            result = ORL_ERR_MEMORY;
-        else if (problem)
-            result = orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu (%s): %s", file, i, path, problem);
+        char *name = model->images[i].name = orl_strdup(log, alike ? path + common : orl_path_name(path));
+        ORL_TRY_MEMORY(name);
+        const char *problem = orl_colmap_name_problem(name);
+        if (problem)
+            return orl_fail(log, ORL_ERR_FORMAT, "%s: camera %zu (%s): %s", file, i, path, problem);
     }
-    return result;
+    return ORL_OK;
 }
 
 // --- their place in the world ---
@@ -335,18 +331,18 @@ static enum orl_result choose_origin(const struct orl_log *log, struct orl_known
 enum orl_result orl_known_place(const struct orl_log *log, struct orl_known_cameras *known)
 {
     struct orl_colmap_model *model = &known->model;
-    enum orl_result result = choose_origin(log, known);
     const double *o = known->origin;
-    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
+    ORL_TRY(choose_origin(log, known));
+    for (size_t i = 0; i < model->image_count; i++)
         orl_pose_move(&model->images[i].cam_from_world, o);
-    for (size_t i = 0; result == ORL_OK && i < model->point_count; i++)
+    for (size_t i = 0; i < model->point_count; i++)
         for (int k = 0; k < 3; k++)
             model->points[i].position[k] -= o[k];
     for (int k = 0; k < 3 && known->room.known; k++) {
         known->room.low[k] -= o[k];
         known->room.high[k] -= o[k];
     }
-    return result;
+    return ORL_OK;
 }
 
 // --- completing them ---

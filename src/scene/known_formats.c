@@ -183,18 +183,12 @@ static enum orl_result read_json(const struct orl_known_source *source,
     return result;
 }
 
-static bool ends_with(const char *text, const char *end)
-{
-    size_t length = strlen(text), tail = strlen(end);
-    return length >= tail && strcmp(text + length - tail, end) == 0;
-}
-
 static enum orl_result read_file(const struct orl_known_source *source,
                                  struct orl_known_cameras *known)
 {
-    const char *path = source->path, *name = orl_path_name(path);
+    const char *path = source->path, *name = orl_path_name(path), *dot = strrchr(name, '.');
     orl_path_print(known->folder, "", "%.*s", name == path ? 1 : (int)(name - path), name == path ? "." : path);
-    if (ends_with(name, ".json") || ends_with(name, ".sfm"))
+    if (dot && (strcmp(dot, ".json") == 0 || strcmp(dot, ".sfm") == 0))
         return read_json(source, known);
     for (size_t i = 0; i < ORL_COUNT(formats); i++)
         if (matches(&formats[i], name))

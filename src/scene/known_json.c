@@ -287,8 +287,8 @@ static enum orl_result read_frames(const struct orl_known_source *source,
     const json_t *root = source->root, *frames = json_object_get(root, "frames");
     struct entry e;
     bool held_out = split != ORL_KNOWN_TRAIN, any = split == ORL_KNOWN_UNUSED || !json_array_size(frames);
-    enum orl_result result = begin(source, 0.5, &e);
-    for (size_t i = 0; result == ORL_OK && i < json_array_size(frames); i++) {
+    ORL_TRY(begin(source, 0.5, &e));
+    for (size_t i = 0; i < json_array_size(frames); i++) {
         const json_t *frame = json_array_get(frames, i);
         struct orl_known_camera camera = {.path = orl_json_text(frame, "file_path"),
                                           .mask = orl_json_text(frame, "mask_path"),
@@ -301,10 +301,9 @@ static enum orl_result read_frames(const struct orl_known_source *source,
         known->splits = known->splits || camera.split != ORL_KNOWN_TRAIN;
         any = any || camera.split != ORL_KNOWN_UNUSED;
         held_out = held_out || camera.split == ORL_KNOWN_TEST;
-        result = read_nerfstudio(&e, root, frame, &camera);
-        ORL_THEN(result, orl_known_add(e.log, e.file, e.place, &camera, known));
+        ORL_TRY(read_nerfstudio(&e, root, frame, &camera));
+        ORL_TRY(orl_known_add(e.log, e.file, e.place, &camera, known));
     }
-    ORL_TRY(result);
     orl_known_say_unused_of(source, root, used, lists);
     if (!held_out && json_array_size(json_object_get(root, "test_filenames")))
         orl_logf(source->log, ORL_LOG_WARNING, "%s: test_filenames has none of the frames: none is held "

@@ -92,17 +92,14 @@ static enum orl_result read_opensfm_points(const struct orl_known_source *source
 {
     const char *id;
     json_t *entry;
-    enum orl_result result = ORL_OK;
     json_object_foreach(points, id, entry) {
         double at[3], rgb[3] = {128, 128, 128};
         if (!orl_json_read_numbers(json_object_get(entry, "coordinates"), 3, at))
             return bad(source, "point", id, "its coordinates are not 3 numbers");
         (void)orl_json_read_numbers(json_object_get(entry, "color"), 3, rgb);
-        result = orl_known_add_point(source->log, at, rgb, &known->model);
-        if (result != ORL_OK)
-            break;
+        ORL_TRY(orl_known_add_point(source->log, at, rgb, &known->model));
     }
-    return result;
+    return ORL_OK;
 }
 
 enum orl_result orl_known_read_opensfm(const struct orl_known_source *source,

@@ -11,14 +11,6 @@
 
 // --- NVM (http://ccwu.me/vsfm/doc.html#nvm) ---
 
-// VisualSFM's distortion maps the picture to the undistorted one: u = d (1 + r d^2). The series of the
-// inverse gives the terms of ours, which maps the other way: d = u (1 - r u^2 + 3 r^2 u^4 - 12 r^3 u^6 + ...).
-static void set_inverse_radial(struct orl_known_camera *camera, const double f_c[4], double r)
-{
-    const double terms[] = {-r, 3 * r * r, 0, 0, -12 * r * r * r, 0, 0, 0};
-    orl_known_set_lens(camera, f_c, terms, ORL_COUNT(terms), false);
-}
-
 // Finds the last `count` words of a line, which are numbers, and ends the line ahead of them: names may
 // have spaces.
 static bool cut_numbers(char *line, double *values, size_t count)
@@ -58,7 +50,11 @@ static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fi
         return orl_text_bad(l, "a camera's quaternion is zero or not finite");
     orl_pose_move(&camera.pose, (double[]){-v[5], -v[6], -v[7]});
     const double f_c[4] = {fixed[0] > 0 ? fixed[0] : v[0], fixed[0] > 0 ? fixed[2] : v[0], fixed[1], fixed[3]};
-    set_inverse_radial(&camera, f_c, fixed[0] > 0 ? fixed[4] : v[8]);
+    // VisualSFM's distortion maps the picture to the undistorted one: u = d (1 + r d^2). The series of the
+    // inverse gives the terms of ours, which maps the other way: d = u (1 - r u^2 + 3 r^2 u^4 - 12 r^3 u^6 + ...).
+    double r = fixed[0] > 0 ? fixed[4] : v[8];
+    const double terms[] = {-r, 3 * r * r, 0, 0, -12 * r * r * r};
+    orl_known_set_lens(&camera, f_c, terms, ORL_COUNT(terms), false);
     return orl_known_add(l->log, l->path, place, &camera, known);
 }
 
@@ -156,16 +152,16 @@ static double number(const struct heads *heads, char *field)
 
 // The axes of a camera that looks down with its top to the north (y), turned by heading (clockwise), then
 // pitch and roll: Rz(-heading) Rx(pitch) Ry(roll), OpenGL's axes.
-static void set_pose(const double value[COLUMNS], double rows[16])
+static bool find_pose(const double value[COLUMNS], struct orl_pose *pose)
 {
     const double degree = M_PI / 180;
     double ch = cos(-value[HEADING] * degree), sh = sin(-value[HEADING] * degree);
     double cp = cos(value[PITCH] * degree), sp = sin(value[PITCH] * degree);
     double cr = cos(value[ROLL] * degree), sr = sin(value[ROLL] * degree);
-    const double turned[12] = {ch * cr - sh * sp * sr, -sh * cp, ch * sr + sh * sp * cr, value[X],
-                               sh * cr + ch * sp * sr, ch * cp, sh * sr - ch * sp * cr, value[Y],
-                               -cp * sr, sp, cp * cr, value[ALT]};
-    memcpy(rows, turned, sizeof turned);
+    const double rows[16] = {ch * cr - sh * sp * sr, -sh * cp, ch * sr + sh * sp * cr, value[X],
+                             sh * cr + ch * sp * sr, ch * cp, sh * sr - ch * sp * cr, value[Y],
+                             -cp * sr, sp, cp * cr, value[ALT]};
+    return orl_pose_from_opengl(rows, pose);
 }
 
 // Lengths are those of a picture whose larger side is 36 mm, or 1 for the principal point, whatever its size.
@@ -173,7 +169,7 @@ static enum orl_result read_row(struct orl_text_lines *l, const struct heads *he
                                 struct orl_known_cameras *known)
 {
     char *fields[FIELDS_MAX], place[64];
-    double value[COLUMNS] = {0}, rows[16] = {0};
+    double value[COLUMNS] = {0};
     const int *at = heads->at;
     size_t count = split(l->at, heads->separator, fields);
     snprintf(place, sizeof place, "line %zu", l->number);
@@ -188,8 +184,7 @@ static enum orl_result read_row(struct orl_text_lines *l, const struct heads *he
         return orl_text_bad(l, "a lens with k4: export without it, or undistorted pictures");
     struct orl_known_camera camera = {.path = at[NAME] < (int)count ? fields[at[NAME]] : "",
                                       .gap = {.size = true, .side = 1}};
-    set_pose(value, rows);
-    if (!orl_pose_from_opengl(rows, &camera.pose))
+    if (!find_pose(value, &camera.pose))
         return orl_text_bad(l, "a camera's place is absurdly far");
     const double f_c[4] = {value[F] / 36, value[F] / 36, value[PX], value[PY]};
     const double terms[] = {value[K1], value[K2], value[T1], value[T2], value[K3]};

@@ -13,28 +13,19 @@
 static enum orl_result read_par(struct orl_text_lines *l, double shift,
                                 struct orl_known_cameras *known)
 {
-    double k[9], *r;
-    struct orl_known_camera camera = {.gap.size = true};
-    size_t length = strcspn(l->at, " \t");
-    char *name = orl_format(l->log, "%.*s", (int)length, l->at);
-    ORL_TRY_MEMORY(name);
-    l->at += length;
-    camera.path = name;
-    r = &camera.pose.r[0][0];
-    enum orl_result result = ORL_OK;
-    char place[64];
+    double k[9];
+    struct orl_known_camera camera = {.path = l->at, .gap.size = true};
+    l->at += strcspn(l->at, " \t");
+    char place[64], *end = l->at; // of the name
     snprintf(place, sizeof place, "line %zu", l->number);
-    if (!orl_text_numbers(l, k, 9) || !orl_text_numbers(l, r, 9) ||
+    if (!orl_text_numbers(l, k, 9) || !orl_text_numbers(l, &camera.pose.r[0][0], 9) ||
         !orl_text_numbers(l, camera.pose.t, 3))
-        result = orl_text_bad(l, "a camera needs a name and 21 numbers: K, R and t");
-    else if (k[1] != 0)
-        result = orl_text_bad(l, "its K has a skew, which is not supported");
-    if (result == ORL_OK) {
-        orl_known_set_lens(&camera, (double[]){k[0], k[4], k[2] + shift, k[5] + shift}, NULL, 0, false);
-        result = orl_known_add(l->log, l->path, place, &camera, known);
-    }
-    free(name);
-    return result;
+        return orl_text_bad(l, "a camera needs a name and 21 numbers: K, R and t");
+    if (k[1] != 0)
+        return orl_text_bad(l, "its K has a skew, which is not supported");
+    *end = '\0';
+    orl_known_set_lens(&camera, (double[]){k[0], k[4], k[2] + shift, k[5] + shift}, NULL, 0, false);
+    return orl_known_add(l->log, l->path, place, &camera, known);
 }
 
 enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
@@ -91,18 +82,14 @@ static enum orl_result read_list(const struct orl_log *log, const char *folder,
 {
     static const char *const known[] = {"list.txt", "bundle/list.txt", "../list.txt",
                                         "imagelist.lst"}; // RealityCapture's
-    struct orl_text_lines l = {0};
-    enum orl_result result = ORL_OK;
-    bool found = false;
-    for (size_t i = 0; i < ORL_COUNT(known) && !found; i++) {
-        const char *path = ORL_PATH(folder, "%s", known[i]);
-        found = orl_path_is_file(path);
-        if (found)
-            result = orl_text_open(log, path, &l);
-    }
-    if (!found)
+    struct orl_text_lines l;
+    size_t i = 0;
+    while (i < ORL_COUNT(known) && !orl_path_is_file(ORL_PATH(folder, "%s", known[i])))
+        i++;
+    if (i == ORL_COUNT(known))
         return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: Bundler's cameras need list.txt, the names of "
                         "their pictures, beside them", folder);
+    enum orl_result result = orl_text_open(log, ORL_PATH(folder, "%s", known[i]), &l);
     while (result == ORL_OK && orl_text_next(&l)) {
         cut_focal_length(l.at);
         result = orl_names_add(log, pictures, l.at);

@@ -82,33 +82,29 @@ static void copy(char *to, size_t size, const char *from)
     snprintf(to, size, "%s", from);
 }
 
-static void begin_sensor(struct reader *r, const char **attributes)
+static enum orl_result begin_sensor(struct reader *r, const char **attributes)
 {
-    r->result = ORL_GROW(r->source->log, r->sensors, r->sensor_capacity, r->sensor_count);
-    if (r->result != ORL_OK)
-        return;
+    ORL_TRY(ORL_GROW(r->source->log, r->sensors, r->sensor_capacity, r->sensor_count));
     struct sensor *sensor = &r->sensors[r->sensor_count++];
     memset(sensor, 0, sizeof *sensor);
     copy(sensor->id, sizeof sensor->id, attribute(attributes, "id"));
     copy(sensor->type, sizeof sensor->type, attribute(attributes, "type"));
+    return ORL_OK;
 }
 
-static void begin_component(struct reader *r, const char **attributes)
+static enum orl_result begin_component(struct reader *r, const char **attributes)
 {
-    r->result = ORL_GROW(r->source->log, r->components, r->component_capacity, r->component_count);
-    if (r->result != ORL_OK)
-        return;
+    ORL_TRY(ORL_GROW(r->source->log, r->components, r->component_capacity, r->component_count));
     struct component *component = &r->components[r->component_count++];
     *component = (struct component){.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .scale = 1};
     copy(component->id, sizeof component->id, attribute(attributes, "id"));
+    return ORL_OK;
 }
 
-static void begin_camera(struct reader *r, const char **attributes)
+static enum orl_result begin_camera(struct reader *r, const char **attributes)
 {
     const char *enabled = attribute(attributes, "enabled");
-    r->result = ORL_GROW(r->source->log, r->cameras, r->camera_capacity, r->camera_count);
-    if (r->result != ORL_OK)
-        return;
+    ORL_TRY(ORL_GROW(r->source->log, r->cameras, r->camera_capacity, r->camera_count));
     struct camera *camera = &r->cameras[r->camera_count++];
     memset(camera, 0, sizeof *camera);
     copy(camera->id, sizeof camera->id, attribute(attributes, "id"));
@@ -116,7 +112,7 @@ static void begin_camera(struct reader *r, const char **attributes)
     copy(camera->component, sizeof camera->component, attribute(attributes, "component_id"));
     camera->enabled = strcmp(enabled, "false") != 0 && strcmp(enabled, "0") != 0;
     camera->label = orl_strdup(r->source->log, attribute(attributes, "label"));
-    r->result = camera->label ? ORL_OK : ORL_ERR_MEMORY;
+    return camera->label ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 static void XMLCALL begin(void *user, const char *name, const char **attributes)
@@ -139,11 +135,11 @@ static void XMLCALL begin(void *user, const char *name, const char **attributes)
         return;
     struct sensor *sensor = r->sensor_count ? &r->sensors[r->sensor_count - 1] : NULL;
     if (strcmp(name, "sensor") == 0 && parent_is(r, "sensors"))
-        begin_sensor(r, attributes);
+        r->result = begin_sensor(r, attributes);
     else if (strcmp(name, "component") == 0 && parent_is(r, "components"))
-        begin_component(r, attributes);
+        r->result = begin_component(r, attributes);
     else if (strcmp(name, "camera") == 0 && inside(r, "cameras"))
-        begin_camera(r, attributes);
+        r->result = begin_camera(r, attributes);
     else if (strcmp(name, "resolution") == 0 && parent_is(r, "sensor") && sensor) {
         sensor->width = atoi(attribute(attributes, "width"));
         sensor->height = atoi(attribute(attributes, "height"));
