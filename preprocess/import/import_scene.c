@@ -268,7 +268,7 @@ static void set_import(const struct import_job *job, json_t *root)
     json_object_set_new(root, "import", settings(job));
     json_object_set_new(root, "room", room_json(job));
     if (o[0] != 0 || o[1] != 0 || o[2] != 0)
-        json_object_set_new(root, "origin", orl_manifest_origin(o));
+        json_object_set_new(root, "origin", json_pack("[f,f,f]", o[0], o[1], o[2]));
 }
 
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,

@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "core/vec3.h"
 #include "scene/point_lod.h"
 #include "scene/tuned_settings.h"
 
@@ -184,14 +185,11 @@ static enum orl_result read_ground(const struct orl_log *log, const char *path,
     ground->known = told != NULL;
     if (!told || json_is_null(told))
         return ORL_OK;
-    double length2 = 0, height = json_number_value(json_object_get(told, "height"));
-    bool numbers = orl_json_read_numbers(plane, 4, ground->plane);
-    for (size_t k = 0; numbers && k < 3; k++)
-        length2 += ground->plane[k] * ground->plane[k];
-    if (!numbers || fabs(length2 - 1) > 1e-6 || !(height > 0 && isfinite(height)))
-        return orl_fail(log, ORL_ERR_FORMAT,
-                        "%s: \"ground\" is not a plane, its normal of length 1, and a height above "
-                        "0", path);
+    double height = json_number_value(json_object_get(told, "height"));
+    if (!orl_json_read_numbers(plane, 4, ground->plane) ||
+        fabs(orl_dot3(ground->plane, ground->plane) - 1) > 1e-6 || !(height > 0 && isfinite(height)))
+        return orl_json_refuse(&(struct orl_json_place){log, path, NULL}, "ground",
+                               "a plane, its normal of length 1, and a height above 0");
     ground->height = height;
     return ORL_OK;
 }
@@ -228,15 +226,10 @@ enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *pa
     for (int k = 0; good && k < 3; k++)
         good = room->low[k] < room->high[k];
     if (!good)
-        return orl_fail(log, ORL_ERR_FORMAT, "%s: \"room\" is not its lowest and its highest "
-                        "corner, of 3 numbers each", path);
+        return orl_json_refuse(&(struct orl_json_place){log, path, NULL}, "room",
+                               "its lowest and its highest corner, of 3 numbers each");
     room->known = true;
     return ORL_OK;
-}
-
-json_t *orl_manifest_origin(const double origin[3])
-{
-    return json_pack("[f,f,f]", origin[0], origin[1], origin[2]);
 }
 
 json_t *orl_manifest_room(const struct orl_room *room)

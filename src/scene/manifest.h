@@ -26,7 +26,6 @@ enum orl_result orl_manifest_read_room(const struct orl_log *log, const char *pa
                                        const json_t *root,
                                        struct orl_room *room) ORL_CHECK_RESULT;
 // The value of "room", released with json_decref; JSON null where it is not known.
-json_t *orl_manifest_origin(const double origin[3]);
 json_t *orl_manifest_room(const struct orl_room *room);
 // The value of "ground", released with json_decref; JSON null where there is no ground.
 json_t *orl_manifest_ground(const struct orl_ground *ground);

@@ -49,14 +49,17 @@ void orl_path_finish(struct orl_path *path)
     memset(path, 0, sizeof *path);
 }
 
-// Views that are computed may lie beyond all bounds though those they come from do not.
-static enum orl_result check_made(const struct orl_log *log, const struct orl_path *path)
+// Views that are computed may lie beyond all bounds though those they come from do not: the path is
+// released then.
+static enum orl_result check_made(const struct orl_log *log, struct orl_path *path)
 {
     for (size_t i = 0; i < path->count; i++) {
         const char *problem = orl_view_problem(&path->views[i]);
-        if (problem)
+        if (problem) {
+            orl_path_finish(path);
             return orl_fail(log, ORL_ERR_DATA, "view %zu of a path between these cameras is not "
                             "usable: %s", i, problem);
+        }
     }
     return ORL_OK;
 }
@@ -113,9 +116,9 @@ static size_t segment_at(const struct keys *keys, double share, double *t)
 static enum orl_result spread_frames(const struct orl_log *log, const struct keys *keys,
                                      size_t frames, struct orl_path *path)
 {
-    enum orl_result result = allocate(log, frames, path);
     const struct orl_view *first = keys->path->views;
-    for (size_t i = 0; result == ORL_OK && i < frames; i++) {
+    ORL_TRY(allocate(log, frames, path));
+    for (size_t i = 0; i < frames; i++) {
         double centre[3], t;
         size_t segment = segment_at(keys, frames > 1 ? (double)i / (double)(frames - 1) : 0, &t);
         struct orl_view *view = &path->views[i];
@@ -125,9 +128,7 @@ static enum orl_result spread_frames(const struct orl_log *log, const struct key
         spline_centre(keys, segment, t, centre);
         orl_pose_set_centre(&view->cam_from_world, centre);
     }
-    if (result == ORL_OK && (result = check_made(log, path)) != ORL_OK)
-        orl_path_finish(path);
-    return result;
+    return check_made(log, path);
 }
 
 enum orl_result orl_path_through_photos(const struct orl_log *log, const struct orl_scene *scene,
@@ -186,8 +187,8 @@ enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scen
     if (scene->photo_count < 2 || !find_circle(scene, &circle))
         return orl_fail(log, ORL_ERR_DATA, "the photographs do not look at one place that a path "
                         "could circle");
-    enum orl_result result = allocate(log, frames, path);
-    for (size_t i = 0; result == ORL_OK && i < frames; i++) {
+    ORL_TRY(allocate(log, frames, path));
+    for (size_t i = 0; i < frames; i++) {
         double angle = 2 * M_PI * (double)i / (double)frames, eye[3];
         for (int k = 0; k < 3; k++)
             eye[k] = circle.middle[k] + circle.height * circle.up[k] +
@@ -195,9 +196,7 @@ enum orl_result orl_path_around(const struct orl_log *log, const struct orl_scen
         path->views[i].camera = orl_photo_upright(&scene->photos[0]).camera;
         path->views[i].cam_from_world = orl_pose_look_at(eye, circle.middle, circle.up);
     }
-    if (result == ORL_OK && (result = check_made(log, path)) != ORL_OK)
-        orl_path_finish(path);
-    return result;
+    return check_made(log, path);
 }
 
 static enum orl_result check_view(const struct orl_log *log, const char *file, const char *what,
@@ -255,11 +254,10 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
 {
     const json_t *keys = json_object_get(root, "keyframes");
     const json_t *frames = json_object_get(root, "frames");
-    struct orl_path read = {0};
-    enum orl_result result = allocate(log, json_array_size(keys), &read);
-    double *seconds = orl_array(log, read.count ? read.count : 1, sizeof *seconds);
-    if (result == ORL_OK && !seconds)
-        result = ORL_ERR_MEMORY;
+    struct orl_path read;
+    ORL_TRY(allocate(log, json_array_size(keys), &read));
+    double *seconds = orl_array(log, read.count, sizeof *seconds);
+    enum orl_result result = seconds ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < read.count; i++) {
         read.views[i].camera = scene->photos[0].view.camera;
         bool ok = read_key(scene, json_array_get(keys, i), &read.views[i], &seconds[i]);
