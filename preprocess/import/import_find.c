@@ -242,24 +242,15 @@ static enum orl_result find_picture(const struct import_job *job, const char *di
     return ORL_OK;
 }
 
-static size_t camera_index(const struct orl_colmap_model *model, uint32_t id)
-{
-    return (size_t)(orl_colmap_camera_by_id(model, id) - model->cameras);
-}
-
-static enum orl_known_split split_of(const struct import_job *job,
-                                     const struct orl_colmap_image *image)
-{
-    return job->known.splits ? job->known.pictures[image->id - 1].split : ORL_KNOWN_TRAIN;
-}
-
-// What the user says of held-out photographs replaces what the file of cameras says.
-static bool uses_splits(const struct import_job *job)
+// True when the file of cameras puts a photograph there. What the user says of held-out photographs
+// replaces what the file says.
+static bool goes_to(const struct import_job *job, const struct orl_colmap_image *image,
+                    enum orl_known_split split)
 {
     const struct orl_names *list = job->params->test_list;
     const struct orl_test_block *block = &job->params->test_block;
     return job->known.splits && !job->params->test_every && !(list && list->count) &&
-           block->first == block->end;
+           block->first == block->end && job->known.pictures[image->id - 1].split == split;
 }
 
 // A file that is empty or no picture is warned of, like one that is missing.
@@ -283,16 +274,17 @@ static enum orl_result find_pictures(struct import_job *job, const char *dir)
     ORL_TRY_MEMORY(job->views && job->why_not);
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         struct import_view *view = &job->views[job->view_count];
-        if (uses_splits(job) && split_of(job, &model->images[i]) == ORL_KNOWN_UNUSED) {
+        const struct orl_colmap_image *image = &model->images[i];
+        if (goes_to(job, image, ORL_KNOWN_UNUSED)) {
             job->why_not[i] = "neither for training nor for testing";
             unused++;
             continue;
         }
-        *view = (struct import_view){.image = &model->images[i],
-                                     .camera = camera_index(model, model->images[i].camera_id)};
-        result = find_picture(job, dir, view->image, &view->picture);
+        view->image = image;
+        view->camera = (size_t)(orl_colmap_camera_by_id(model, image->camera_id) - model->cameras);
+        result = find_picture(job, dir, image, &view->picture);
         if (view->picture.kind == IMPORT_NOTHING) {
-            missed = view->image->name;
+            missed = image->name;
             job->why_not[i] = "no picture";
             missing++;
         } else if (is_broken(job, &view->picture)) {
@@ -358,10 +350,10 @@ static enum orl_result hold_out(struct import_job *job)
     const struct orl_import_params *params = job->params;
     size_t test = 0;
     ORL_TRY(orl_test_block_check(job->log, params->test_block, job->view_count));
+    for (size_t i = 0; i < job->view_count; i++)
+        job->views[i].test = goes_to(job, job->views[i].image, ORL_KNOWN_TEST);
     for (int i = params->test_block.first; i < params->test_block.end; i++)
         job->views[i].test = true;
-    for (size_t i = 0; uses_splits(job) && i < job->view_count; i++)
-        job->views[i].test = split_of(job, job->views[i].image) == ORL_KNOWN_TEST;
     for (size_t i = 0; params->test_every && i < job->view_count; i += (size_t)params->test_every)
         job->views[i].test = true;
     for (size_t n = 0; params->test_list && n < params->test_list->count; n++) {
@@ -432,14 +424,11 @@ static enum orl_result find_stated_masks(struct import_job *job)
     for (size_t i = 0; known->pictures && i < job->view_count; i++) {
         struct import_view *view = &job->views[i];
         const char *told = known->pictures[view->image->id - 1].mask;
-        if (!told)
-            continue;
         char path[ORL_PATH_SIZE];
-        if (!orl_known_find(known->folder, told, path)) {
-            missing++;
-            continue;
-        }
-        ORL_TRY(set(job->log, path, IMPORT_PICTURE, &view->mask));
+        if (told && orl_known_find(known->folder, told, path))
+            ORL_TRY(set(job->log, path, IMPORT_PICTURE, &view->mask));
+        else
+            missing += told != NULL;
     }
     if (missing)
         orl_logf(job->log, ORL_LOG_WARNING, "%s: masks of %zu of %zu cameras, which their file names, are not "

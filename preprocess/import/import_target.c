@@ -4,11 +4,6 @@
 #include "preprocess/import/import_internal.h"
 #include "scene/colmap_internal.h"
 
-// Tangents of the angles from the axis to the picture's left, top, right and bottom side.
-struct extent {
-    double side[4];
-};
-
 static bool in_picture(const struct orl_colmap_camera *camera, const double ray[2])
 {
     double pixel[2];
@@ -41,16 +36,17 @@ static double reach(const struct orl_colmap_camera *camera, const double directi
     return at;
 }
 
-// True when the distorted picture covers the rectangle's whole border.
-static bool covered(const struct orl_colmap_camera *camera, const struct extent *e)
+// True when the distorted picture covers the rectangle's whole border. side: tangents of the angles
+// from the axis to its left, top, right and bottom side.
+static bool covered(const struct orl_colmap_camera *camera, const double side[4])
 {
     enum { SAMPLES = 64 };
     for (int i = 0; i <= SAMPLES; i++) {
         double t = (double)i / SAMPLES;
-        double x = -e->side[0] + t * (e->side[0] + e->side[2]);
-        double y = -e->side[1] + t * (e->side[1] + e->side[3]);
+        double x = -side[0] + t * (side[0] + side[2]);
+        double y = -side[1] + t * (side[1] + side[3]);
         const double border[4][2] = {
-            {x, -e->side[1]}, {x, e->side[3]}, {-e->side[0], y}, {e->side[2], y}};
+            {x, -side[1]}, {x, side[3]}, {-side[0], y}, {side[2], y}};
         for (int k = 0; k < 4; k++)
             if (!in_picture(camera, border[k]))
                 return false;
@@ -75,18 +71,18 @@ struct orl_camera orl_import_target(const struct orl_colmap_camera *from, int ma
     static const double directions[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
     const double shrink = 0.995, least = 0.2; // COLMAP's smallest scale
     struct orl_camera to = from->pinhole;
-    struct extent e;
+    double side[4]; // see covered
     bool distorted = !orl_colmap_camera_is_pinhole(from);
     for (int k = 0; k < 4; k++)
-        e.side[k] = reach(from, directions[k]);
-    for (double scale = 1; distorted && scale > least && !covered(from, &e); scale *= shrink)
+        side[k] = reach(from, directions[k]);
+    for (double scale = 1; distorted && scale > least && !covered(from, side); scale *= shrink)
         for (int k = 0; k < 4; k++)
-            e.side[k] *= shrink;
+            side[k] *= shrink;
     if (distorted) {
-        to.width = (int)fmax(1, floor((e.side[0] + e.side[2]) * to.fx));
-        to.height = (int)fmax(1, floor((e.side[1] + e.side[3]) * to.fy));
-        to.cx = e.side[0] * to.fx;
-        to.cy = e.side[1] * to.fy;
+        to.width = (int)fmax(1, floor((side[0] + side[2]) * to.fx));
+        to.height = (int)fmax(1, floor((side[1] + side[3]) * to.fy));
+        to.cx = side[0] * to.fx;
+        to.cy = side[1] * to.fy;
     }
     int larger = to.width > to.height ? to.width : to.height;
     if (max_size && larger > max_size)
