@@ -60,22 +60,13 @@ static enum orl_result need_file(const struct orl_json_place *place, const struc
                ? ORL_OK : orl_fail(place->log, ORL_ERR_NOT_FOUND, "%s: %s missing", path.text, what);
 }
 
-static enum orl_result read_mask(const struct orl_json_place *place, const json_t *entry,
-                                 const struct orl_scene *scene, struct orl_photo *photo)
-{
-    ORL_TRY(orl_json_bool(place, entry, "mask", &photo->masked));
-    return photo->masked ? need_file(place, scene, photo, ORL_FILE_MASK, "this mask is") : ORL_OK;
-}
-
 static enum orl_result read_occluders(const struct orl_json_place *place, const json_t *entry,
                                       const struct orl_scene *scene, struct orl_photo *photo)
 {
     double share = 0;
     ORL_TRY(orl_json_number(place, entry, "occluded", 0, 1, &share));
     photo->occluded = (float)share;
-    if (!(photo->occluded > 0))
-        return ORL_OK;
-    return need_file(place, scene, photo, ORL_FILE_OCCLUDERS, "these occluders are");
+    return photo->occluded > 0 ? need_file(place, scene, photo, ORL_FILE_OCCLUDERS, "these occluders are") : ORL_OK;
 }
 
 static enum orl_result read_radiance(const struct orl_json_place *place, const json_t *entry,
@@ -98,7 +89,8 @@ static enum orl_result read_photo(const struct orl_json_place *place, const json
     ORL_TRY(read_optics(place, entry, scene, photo));
     ORL_TRY(read_radiance(place, entry, photo));
     ORL_TRY(read_occluders(place, entry, scene, photo));
-    return read_mask(place, entry, scene, photo);
+    ORL_TRY(orl_json_bool(place, entry, "mask", &photo->masked));
+    return photo->masked ? need_file(place, scene, photo, ORL_FILE_MASK, "this mask is") : ORL_OK;
 }
 
 static enum orl_result read_curve(const struct orl_log *log, const char *path,
@@ -128,14 +120,12 @@ static enum orl_result read_responses(const struct orl_log *log, const char *pat
     scene->responses = orl_array(log, count, sizeof *scene->responses);
     ORL_TRY_MEMORY(scene->responses);
     scene->response_count = count;
-    enum orl_result result = ORL_OK;
     for (size_t i = 0; i < count; i++) {
         const json_t *curves = json_object_get(json_array_get(list, i), "linear");
-        for (size_t c = 0; result == ORL_OK && c < 3; c++)
-            result = read_curve(log, path, json_array_get(curves, c),
-                                scene->responses[i].linear[c]);
+        for (size_t c = 0; c < 3; c++)
+            ORL_TRY(read_curve(log, path, json_array_get(curves, c), scene->responses[i].linear[c]));
     }
-    return result;
+    return ORL_OK;
 }
 
 static int compare_photo(const void *name, const void *photo)

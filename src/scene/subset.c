@@ -112,23 +112,17 @@ enum orl_result orl_subset_add_checksums(const struct orl_log *log, const char *
     return ORL_OK;
 }
 
-static enum orl_result read_manifest(const struct orl_log *log, const struct orl_scene *scene,
-                                     json_t **manifest)
-{
-    const char *path = ORL_PATH(scene->dir, "scene.json");
-    if (!orl_path_is_file(path))
-        return orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
-                        scene->dir);
-    return orl_json_read(log, path, manifest);
-}
-
 enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_scene *scene,
                                  const bool *keep, const char *dir, json_t **manifest)
 {
+    const char *path = ORL_PATH(scene->dir, "scene.json");
     *manifest = NULL;
     if (scene->frame_count)
         return orl_fail(log, ORL_ERR_DATA, "%s: is a sequence", scene->dir);
-    enum orl_result result = read_manifest(log, scene, manifest);
+    if (!orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
+                        scene->dir);
+    enum orl_result result = orl_json_read(log, path, manifest);
     ORL_THEN(result, copy_if_there(log, scene, ORL_PATH(scene->dir, "points.ply"), dir));
     ORL_THEN(result, copy_if_there(log, scene, orl_scene_mesh_path(scene).text, dir));
     ORL_THEN(result, orl_subset_write_model(log, scene, keep, dir));
