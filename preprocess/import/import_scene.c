@@ -1,7 +1,6 @@
 // The scene's files besides the photographs: sparse model, points, mesh, manifest.
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/json.h"
 #include "core/memory.h"
@@ -21,15 +20,9 @@ static void set_points(const struct import_points *points, const char *known_nam
                        struct orl_colmap_image *image)
 {
     const char *name = points->renamed ? image->name : known_name;
-    image->points = NULL;
-    image->point_count = 0;
-    for (size_t i = 0; i < points->model->image_count; i++) {
-        const struct orl_colmap_image *from = &points->model->images[i];
-        if (strcmp(from->name, name) == 0) {
-            image->points = from->points;
-            image->point_count = from->point_count;
-        }
-    }
+    const struct orl_colmap_image *from = orl_colmap_image_by_name(points->model, name);
+    image->points = from ? from->points : NULL;
+    image->point_count = from ? from->point_count : 0;
 }
 
 enum orl_result orl_import_write_model(const struct import_job *job, const char *name, bool for_database,
