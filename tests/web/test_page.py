@@ -17,6 +17,9 @@ from browser import Browser, Server
 ORIEL, TOOL, SCENE, SITE, SINGLE = sys.argv[1:6]
 WIDTH, HEIGHT = 360, 240 # of the photographs' aspect, with room beside the tools
 LEAST_MOVE = 0.002       # of a held key, shares of the scene's distance
+# dB, least PSNR of the page to the renderer. The page's photographs and depth maps are compressed, so that a few cells
+# choose another guessed depth.
+AGREES = 39
 
 
 def run(*command):
@@ -104,7 +107,7 @@ class Page(unittest.TestCase):
             page, own = self.file("page.png"), self.file("own.png")
             self.browser.capture(page, camera)
             run(ORIEL, "render", SCENE, "--at", name, "--out", own, "--quiet")
-            self.assertGreaterEqual(psnr(page, own), 40, name)
+            self.assertGreaterEqual(psnr(page, own), AGREES, name)
 
     def both_with(self, name, camera, change):
         """What page and renderer show once `change` has edited manifest.json of the site and scene.json."""
@@ -132,7 +135,7 @@ class Page(unittest.TestCase):
         moves = self.file("moves.png")
         self.browser.capture(moves, camera)
         rests, own = self.both_with("rests", camera, lambda content: content.update(backdrop="rests"))
-        self.assertGreaterEqual(psnr(rests, own), 39)
+        self.assertGreaterEqual(psnr(rests, own), AGREES)
         self.assertGreaterEqual(psnr(rests, own), psnr(moves, own) + 3)
 
     def test_depths_are_tried_as_in_the_renderer(self):
@@ -142,7 +145,7 @@ class Page(unittest.TestCase):
         camera = next(c for c in self.cameras if c["test"])
         without, _ = self.both_with("without", camera, change)
         tried, own = self.both_with("tried", camera, lambda content: None)
-        self.assertGreaterEqual(psnr(tried, own), 40)
+        self.assertGreaterEqual(psnr(tried, own), AGREES)
         self.assertGreaterEqual(psnr(tried, own), psnr(without, own) + 1)
 
     def test_soft_splats_correct_as_in_the_renderer(self):
