@@ -23,7 +23,7 @@ static bool cancelled(void *priv)
     return interrupted != 0;
 }
 
-static void end_line(struct terminal *t)
+void terminal_finish(struct terminal *t)
 {
     if (t->line_open)
         fputc('\n', stderr);
@@ -35,7 +35,7 @@ static void print_log(void *priv, enum orl_log_level level, const char *message)
     struct terminal *t = priv;
     if (t->quiet && level > ORL_LOG_WARNING)
         return;
-    end_line(t);
+    terminal_finish(t);
     struct orl_log plain = orl_log_stderr(level);
     plain.print(plain.priv, level, message);
 }
@@ -69,7 +69,7 @@ static void report(void *priv, const char *step, double done, double total, cons
         return; // reported already
     snprintf(t->ended, sizeof t->ended, "%s", ended ? step : "");
     if (started) {
-        end_line(t);
+        terminal_finish(t);
         snprintf(t->step, sizeof t->step, "%s", step);
         t->step_start_s = now;
         t->last_print_s = 0;
@@ -99,9 +99,4 @@ void terminal_init(struct terminal *t, enum orl_log_level level, bool quiet)
     signal(SIGTERM, on_signal);
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN); // a write beyond ulimit -f fails instead, and is told
-}
-
-void terminal_finish(struct terminal *t)
-{
-    end_line(t);
 }
