@@ -209,14 +209,11 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              const struct orl_scene *scene, const struct orl_eval_params *params,
                              struct orl_eval *eval)
 {
-    memset(eval, 0, sizeof *eval);
     struct job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .renderer = renderer, .scene = scene,
                       .params = params, .eval = eval};
-    eval->scene = scene;
-    eval->method = params->method;
+    *eval = (struct orl_eval){.scene = scene, .method = params->method, .has_truth = params->truth,
+                              .has_vehicle = params->truth && params->truth->vehicle};
     snprintf(eval->setting, sizeof eval->setting, "%s", params->setting ? params->setting : "");
-    eval->has_truth = params->truth != NULL;
-    eval->has_vehicle = params->truth && params->truth->vehicle;
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);
     ORL_THEN(result, list_views(&job, eval));

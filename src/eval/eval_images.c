@@ -47,25 +47,19 @@ static enum orl_result beside(const struct orl_log *log, const struct orl_image 
     return ORL_OK;
 }
 
-static enum orl_result write_as(const struct orl_log *log, const char *dir, const char *stem,
-                                const char *middle, const char *end,
-                                const struct orl_image *image)
-{
-    return orl_png_write(log, ORL_PATH(dir, "%s.%s%s.png", stem, middle, end), image);
-}
-
 enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,
                                       const struct orl_eval_params *params, size_t photo,
                                       const struct orl_image *rendered,
                                       const struct orl_image *photograph)
 {
+    const char *dir = params->image_dir, *method = params->method;
     struct orl_image panels = {0};
     char stem[ORL_PATH_SIZE];
     print_stem(scene, photo, stem);
     enum orl_result result = beside(log, rendered, photograph, &panels);
-    ORL_THEN(result, write_as(log, params->image_dir, stem, "photo", "", photograph));
-    ORL_THEN(result, write_as(log, params->image_dir, stem, params->method, "", rendered));
-    ORL_THEN(result, write_as(log, params->image_dir, stem, params->method, ".diff", &panels));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.photo.png", stem), photograph));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.png", stem, method), rendered));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.diff.png", stem, method), &panels));
     orl_image_finish(&panels);
     return result;
 }

@@ -21,6 +21,7 @@ struct kernel {
 // One picture in the spaces that FLIP needs; width * height values each.
 struct planes {
     int width, height;
+    size_t count; // of pixels
     float *y, *cx, *cz; // YCxCz, then filtered by contrast sensitivity, then Lab with Hunt's effect
     float *edge, *point; // strength of features
     float *work[2]; // of convolve()
@@ -171,8 +172,7 @@ static void fill_features(struct kernel *blur, struct kernel *first, struct kern
 
 static void to_opponent(const struct orl_image *image, struct planes *p)
 {
-    size_t count = (size_t)p->width * (size_t)p->height;
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < p->count; i++) {
         float rgb[3], xyz[3];
         for (int c = 0; c < 3; c++)
             rgb[c] = orl_srgb_decode((float)image->u8[3 * i + (size_t)c] / 255);
@@ -187,20 +187,18 @@ static void to_opponent(const struct orl_image *image, struct planes *p)
 static void find_features(struct planes *p, const struct kernel *blur,
                           const struct kernel *derivative, float *out)
 {
-    size_t count = (size_t)p->width * (size_t)p->height;
     float *down = p->spare[1];
     convolve(p->spare[0], p->width, p->height, derivative, blur, p->work, out);
     convolve(p->spare[0], p->width, p->height, blur, derivative, p->work, down);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < p->count; i++)
         out[i] = hypotf(out[i], down[i]);
 }
 
 static void measure_features(struct planes *p)
 {
-    size_t count = (size_t)p->width * (size_t)p->height;
     struct kernel blur, first, second;
     fill_features(&blur, &first, &second);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < p->count; i++)
         p->spare[0][i] = (p->y[i] + 16) / 116;
     find_features(p, &blur, &first, p->edge);
     find_features(p, &blur, &second, p->point);
@@ -208,7 +206,6 @@ static void measure_features(struct planes *p)
 
 static void see(struct planes *p)
 {
-    size_t count = (size_t)p->width * (size_t)p->height;
     struct kernel lightness, red_green, blue_yellow, wide;
     fill_sensitivity(1, 0.0047, &lightness);
     fill_sensitivity(1, 0.0053, &red_green);
@@ -218,8 +215,8 @@ static void see(struct planes *p)
     convolve(p->cx, p->width, p->height, &red_green, &red_green, p->work, p->cx);
     convolve(p->cz, p->width, p->height, &wide, &wide, p->work, p->spare[0]);
     convolve(p->cz, p->width, p->height, &blue_yellow, &blue_yellow, p->work, p->cz);
-    blend(p->cz, p->spare[0], (float)(wide_weight / (narrow_weight + wide_weight)), count, p->cz);
-    for (size_t i = 0; i < count; i++) {
+    blend(p->cz, p->spare[0], (float)(wide_weight / (narrow_weight + wide_weight)), p->count, p->cz);
+    for (size_t i = 0; i < p->count; i++) {
         float xyz[3], rgb[3], lab[3];
         xyz[1] = (p->y[i] + 16) / 116;
         xyz[0] = xyz[1] + p->cx[i] / 500;
@@ -238,7 +235,7 @@ static enum orl_result prepare(const struct orl_log *log, const struct orl_image
                                struct planes *p)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
-    *p = (struct planes){.width = image->width, .height = image->height};
+    *p = (struct planes){.width = image->width, .height = image->height, .count = count};
     // The last array also holds a padded row, which may be longer than a small picture.
     p->all = orl_array(log, 8 * count + (size_t)image->width + TAPS_MAX, sizeof *p->all);
     ORL_TRY_MEMORY(p->all);
@@ -289,9 +286,8 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
         hunt_lab((const float[]){0, 1, 0}, green);
         hunt_lab((const float[]){0, 0, 1}, blue);
         float largest = powf(hyab(green, blue), 0.7f);
-        size_t count = (size_t)a->width * (size_t)a->height;
-        for (size_t i = 0; i < count; i++)
-            *mean += (double)flip_at(&one, &two, i, largest) / (double)count;
+        for (size_t i = 0; i < one.count; i++)
+            *mean += (double)flip_at(&one, &two, i, largest) / (double)one.count;
     }
     free(one.all);
     free(two.all);

@@ -72,22 +72,16 @@ static double depth_at(const struct orl_stability_frame *frame, int x, int y)
     return frame->coverage.f32[at] > 0 ? frame->depth.f32[at] : 0;
 }
 
-// Pixel coordinates and depth of a pixel's surface in the other view.
-static bool reproject(const struct orl_view *from, int x, int y, double z,
-                      const struct orl_view *to, double pixel[2], double *depth)
-{
-    double world[3];
-    orl_view_unproject(from, x + 0.5, y + 0.5, z, world);
-    return orl_view_project(to, world, pixel, depth);
-}
-
 // The colour in `before` for a pixel of `after`. Returns false unless the pixel and the four pixels
 // around its place in `before` show one surface, since other surfaces would be blended in.
 static bool warp(const struct orl_stability_frame *before,
                  const struct orl_stability_frame *after, int x, int y, struct sample *out)
 {
-    double z = depth_at(after, x, y), pixel[2], expected, wx[TAPS], wy[TAPS];
-    if (!(z > 0) || !reproject(&after->view, x, y, z, &before->view, pixel, &expected))
+    double z = depth_at(after, x, y), world[3], pixel[2], expected, wx[TAPS], wy[TAPS];
+    if (!(z > 0))
+        return false;
+    orl_view_unproject(&after->view, x + 0.5, y + 0.5, z, world);
+    if (!orl_view_project(&before->view, world, pixel, &expected))
         return false;
     // An unchanged view gives exactly the same pixel, without rounding errors.
     for (int k = 0; k < 2; k++) {
@@ -285,8 +279,7 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_frame frame = {0};
-    memset(out, 0, sizeof *out);
-    out->view = params->views[index];
+    *out = (struct orl_stability_frame){.view = params->views[index]};
     const bool *skip = params->skip ? params->skip(params->skip_priv, index) : NULL;
     double start = orl_time_s();
     enum orl_result result = orl_renderer_draw(renderer, &out->view, params->render, skip, &frame);
@@ -294,12 +287,9 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
     ORL_THEN(result, orl_tone_srgb(log, &frame.color, &out->srgb));
     if (result == ORL_OK && params->image_dir)
         result = orl_png_write(log, ORL_PATH(params->image_dir, "%s.%05zu.png", params->method, index), &out->srgb);
-    if (result == ORL_OK) {
-        out->depth = frame.depth;
-        out->coverage = frame.coverage;
-        memset(&frame.depth, 0, sizeof frame.depth);
-        memset(&frame.coverage, 0, sizeof frame.coverage);
-    }
+    out->depth = frame.depth;
+    out->coverage = frame.coverage;
+    frame.depth = frame.coverage = (struct orl_image){0};
     orl_frame_finish(&frame);
     return result;
 }

@@ -28,14 +28,14 @@ static enum orl_result copy_photos(const struct orl_log *log, const struct orl_s
                                    struct orl_validation *validation)
 {
     bool unknown = exposure_is_unknown(scene);
-    validation->photos = orl_array(log, scene->photo_count, sizeof *validation->photos);
-    ORL_TRY_MEMORY(validation->photos);
-    memcpy(validation->photos, scene->photos, scene->photo_count * sizeof *validation->photos);
+    struct orl_photo *photos = orl_array(log, scene->photo_count, sizeof *photos);
+    ORL_TRY_MEMORY(photos);
+    memcpy(photos, scene->photos, scene->photo_count * sizeof *photos);
     for (size_t i = 0; unknown && i < scene->photo_count; i++)
         for (int c = 0; c < 3; c++)
-            validation->photos[i].gain[c] = 1;
+            photos[i].gain[c] = 1;
     validation->scene = *scene;
-    validation->scene.photos = validation->photos;
+    validation->scene.photos = photos;
     return ORL_OK;
 }
 
@@ -75,7 +75,7 @@ void orl_validation_finish(struct orl_validation *validation)
         orl_heldout_finish(&validation->views[i]);
     free(validation->views);
     free(validation->skip);
-    free(validation->photos);
+    free(validation->scene.photos);
     memset(validation, 0, sizeof *validation);
 }
 

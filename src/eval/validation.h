@@ -10,8 +10,7 @@
 enum { ORL_VALIDATION_TRAIN_MIN = 3 };
 
 struct orl_validation {
-    struct orl_scene scene; // shares all but `photos`, whose gains are those for validation
-    struct orl_photo *photos;  // owned
+    struct orl_scene scene; // shares all but `photos`, which are owned: their gains are those for validation
     struct orl_heldout *views; // owned: the photographs, in ascending order
     size_t count;
     bool *skip; // owned: photographs that the current rendering does without

@@ -112,7 +112,7 @@ static void an_exposure_that_none_could_guess_does_not_judge(void **state)
         f.scene.photos[3].gain[0] = guessed ? 1.5f : 1;
         assert_int_equal(orl_validation_load(NULL, &f.scene, 0, 1, &validation), ORL_OK);
         assert_int_equal(validation.count, 3);
-        assert_float_equal(validation.photos[1].gain[0], guessed ? 2 : 1, 0);
+        assert_float_equal(validation.scene.photos[1].gain[0], guessed ? 2 : 1, 0);
         assert_float_equal(f.scene.photos[1].gain[0], 2, 0); // the scene's own stays
         orl_validation_finish(&validation);
     }
