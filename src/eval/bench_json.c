@@ -78,5 +78,5 @@ char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench
         runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
         "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
         rasters_json(bench));
-    return orl_reports_to_text(log, root, root != NULL, true, 6);
+    return orl_reports_to_text(log, root, 0, true, 6);
 }

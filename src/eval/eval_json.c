@@ -52,11 +52,10 @@ static json_t *eval_json(const struct orl_eval *eval)
                      "device_bytes", owners);
 }
 
-char *orl_reports_to_text(const struct orl_log *log, json_t *all, bool whole, bool array,
-                          int digits)
+char *orl_reports_to_text(const struct orl_log *log, json_t *all, size_t count, bool array, int digits)
 {
     char *text = NULL;
-    if (whole)
+    if (json_array_size(all) == count)
         text = json_dumps(array ? all : json_array_get(all, 0),
                           JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(digits));
     if (!text)
@@ -70,8 +69,7 @@ char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, 
                        bool array)
 {
     json_t *all = json_array();
-    bool ok = all != NULL;
-    for (size_t i = 0; i < count && ok; i++)
-        ok = json_array_append_new(all, eval_json(&evals[i])) == 0;
-    return orl_reports_to_text(log, all, ok, array, 8);
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(all, eval_json(&evals[i]));
+    return orl_reports_to_text(log, all, count, array, 8);
 }

@@ -32,8 +32,7 @@ char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *s
                             const struct orl_stability *all, size_t count, bool array)
 {
     json_t *root = json_array();
-    bool ok = root != NULL;
-    for (size_t i = 0; ok && i < count; i++)
-        ok = json_array_append_new(root, stability_json(scene, &all[i])) == 0;
-    return orl_reports_to_text(log, root, ok, array, 6);
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(root, stability_json(scene, &all[i]));
+    return orl_reports_to_text(log, root, count, array, 6);
 }
