@@ -32,7 +32,7 @@ static enum orl_result report(const struct orl_log *log, const struct tune_optio
                               const char *device, const struct orl_search *search)
 {
     const struct orl_method *method = search->best.method;
-    json_t *settings = orl_choice_settings(method, &search->best.params), *value;
+    json_t *settings = orl_choice_settings(&search->best), *value;
     const char *key;
     printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
            method->name, search->score.psnr_db, search->trials[0].psnr_db,

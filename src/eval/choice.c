@@ -39,26 +39,18 @@ enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scen
     return method ? make(&wish, method, choice) : ORL_ERR_ARGUMENT;
 }
 
-// A printed float without the digits that it does not have: 0.1, not 0.100000001.
-static const char *rounded(const char *value, char text[ORL_OPTION_NAME_BYTES])
-{
-    snprintf(text, ORL_OPTION_NAME_BYTES, "%.6g", atof(value));
-    return text;
-}
-
-json_t *orl_choice_settings(const struct orl_method *method,
-                            const struct orl_render_params *params)
+json_t *orl_choice_settings(const struct orl_choice *choice)
 {
     json_t *settings = json_object();
     for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
         char own[ORL_OPTION_NAME_BYTES], value[ORL_OPTION_NAME_BYTES];
-        orl_render_option_print(o, &method->params, own, sizeof own);
-        orl_render_option_print(o, params, value, sizeof value);
+        orl_render_option_print(o, &choice->method->params, own, sizeof own);
+        orl_render_option_print(o, &choice->params, value, sizeof value);
         if (strcmp(own, value) == 0)
             continue;
-        json_object_set_new(settings, o->key, o->kind == ORL_OPTION_NUMBER
-                                                  ? json_real(atof(rounded(value, own)))
-                                                  : json_string(value));
+        snprintf(own, sizeof own, "%.6g", atof(value)); // without digits that a float lacks: 0.1, not 0.100000001
+        json_object_set_new(settings, o->key,
+                            o->kind == ORL_OPTION_NUMBER ? json_real(atof(own)) : json_string(value));
     }
     return settings;
 }
@@ -67,7 +59,7 @@ json_t *orl_choice_record(const struct orl_choice *choice, double before_psnr_db
                           int size_divide, bool complete)
 {
     return json_pack("{s:o, s:f, s:f, s:I, s:i, s:b}", "settings",
-                     orl_choice_settings(choice->method, &choice->params), "before_psnr_db", before_psnr_db, "psnr_db",
+                     orl_choice_settings(choice), "before_psnr_db", before_psnr_db, "psnr_db",
                      psnr_db, "photographs", (json_int_t)photographs, "size_divide", size_divide, "complete", complete);
 }
 

@@ -23,10 +23,9 @@ enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scen
                                 const struct orl_names *settings,
                                 struct orl_choice *choice) ORL_CHECK_RESULT;
 
-// Keys and values, numbers or names, of the options in which `params` differs from the method's own
+// Keys and values, numbers or names, of the options in which the choice differs from the method's own
 // values: "settings" of "tuned" in scene.json. A new reference.
-json_t *orl_choice_settings(const struct orl_method *method,
-                            const struct orl_render_params *params);
+json_t *orl_choice_settings(const struct orl_choice *choice);
 
 // How good a choice was on photographs: the value for a method in "tuned" of scene.json. before_psnr_db, psnr_db: means
 // over the photographs without what was found, and with it; complete: no limit of time ended the search. A new reference.

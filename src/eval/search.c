@@ -11,17 +11,6 @@
 
 enum { ROUNDS_MAX = 8 };
 
-// Reads the photographs to compare with. ORL_ERR_DATA: fewer than ORL_VALIDATION_TRAIN_MIN.
-static enum orl_result begin(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                             const struct orl_scene *scene,
-                             const struct orl_search_params *params, struct orl_search *s)
-{
-    *s = (struct orl_search){.log = orl_gpu_log(gpu), .renderer = renderer, .scene = scene,
-                             .params = *params, .start_s = orl_time_s(), .complete = true};
-    ORL_REQUIRE(s->log, params->size_divide >= 1 && params->size_divide <= ORL_SEARCH_DIVIDE_MAX);
-    return orl_validation_load(s->log, scene, params->views, params->size_divide, &s->validation);
-}
-
 void orl_search_finish(struct orl_search *s)
 {
     if (!s)
@@ -161,9 +150,11 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
                                const struct orl_choice *start, const struct orl_names *keys,
                                struct orl_search *s)
 {
-    *s = (struct orl_search){0};
-    enum orl_result result = check_keys(orl_gpu_log(gpu), keys);
-    ORL_THEN(result, begin(gpu, renderer, scene, params, s));
+    *s = (struct orl_search){.log = orl_gpu_log(gpu), .renderer = renderer, .scene = scene,
+                             .params = *params, .start_s = orl_time_s(), .complete = true};
+    ORL_REQUIRE(s->log, params->size_divide >= 1 && params->size_divide <= ORL_SEARCH_DIVIDE_MAX);
+    enum orl_result result = check_keys(s->log, keys);
+    ORL_THEN(result, orl_validation_load(s->log, scene, params->views, params->size_divide, &s->validation));
     struct orl_trial first = {.key = NULL};
     bool same;
     ORL_THEN(result, try_choice(s, start, &first, &same));

@@ -57,8 +57,7 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
     ORL_THEN(result, orl_renderer_draw(renderer, &s->targets.views[0].view, render, NULL, NULL));
     if (result == ORL_OK) {
         orl_trim_count_bytes(s->source.gpu, &figures->point_bytes, &figures->photo_bytes);
-        for (int i = 0; i < ORL_OWNER_COUNT; i++)
-            figures->device_bytes += orl_gpu_owner_bytes(s->source.gpu, (enum orl_owner)i);
+        figures->device_bytes = orl_gpu_bytes(s->source.gpu);
         figures->file_bytes = orl_trim_scene_file_bytes(scene);
     }
     orl_renderer_destroy(&renderer);

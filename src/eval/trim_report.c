@@ -34,7 +34,7 @@ enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
     json_t *root = json_pack(
         "{s:o, s:s, s:s, s:o, s:o, s:o, s:b, s:I, s:o}", "scene", orl_json_string(scene->dir),
         "device", device, "method", trim->choice.method->name, "settings",
-        orl_choice_settings(trim->choice.method, &trim->choice.params), "before",
+        orl_choice_settings(&trim->choice), "before",
         figures_json(&trim->before), "after", figures_json(&trim->after), "complete",
         trim->complete, "undone", (json_int_t)trim->undone, "steps", steps);
     enum orl_result result = orl_json_write(log, path, root);

@@ -150,8 +150,7 @@ static enum orl_result write_manifest(const struct writer *w)
         json_object_set_new(root, "tuned", tuned);
     }
     json_object_set_new(tuned, method,
-                        json_pack("{s:o}", "settings",
-                                  orl_choice_settings(w->choice->method, &w->choice->params)));
+                        json_pack("{s:o}", "settings", orl_choice_settings(w->choice)));
     list_left_out(w, root);
     orl_subset_keep_photographs(w->scene, w->keep, root);
     json_object_set_new(json_object_get(root, "counts"), "points",
