@@ -46,7 +46,6 @@ struct job {
     struct orl_truth truth;
     struct orl_choices choices;
     struct orl_eval *evals; // one per choice
-    size_t count;
 };
 
 // --- tables on stdout ---
@@ -139,9 +138,10 @@ static enum orl_result start_renderer(struct job *job)
 }
 
 // Measures a method with a renderer of its own, so that it answers for its memory alone.
-static enum orl_result evaluate(struct job *job, const struct orl_choice *choice)
+static enum orl_result evaluate(struct job *job, size_t index)
 {
     struct call *call = job->call;
+    const struct orl_choice *choice = &job->choices.items[index];
     const struct eval_options *o = job->options;
     struct orl_eval_params params = {.method = choice->method->name, .setting = choice->setting,
                                      .render = &choice->params, .image_dir = o->images,
@@ -150,7 +150,7 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
                                      .sequence = o->time_step < 0 && call->scene->frame_count
                                                      ? call->scene : NULL,
                                      .truth = o->truth ? &job->truth : NULL};
-    struct orl_eval *eval = &job->evals[job->count];
+    struct orl_eval *eval = &job->evals[index];
     enum orl_result result = ORL_OK;
     if (o->pictures) {
         params.method = "pictures";
@@ -164,12 +164,9 @@ static enum orl_result evaluate(struct job *job, const struct orl_choice *choice
     ORL_THEN(result, orl_eval_run(call->gpu, call->renderer, call->scene, &params, eval));
     orl_hdr_destroy(&job->hdr);
     orl_renderer_destroy(&call->renderer);
-    if (result != ORL_OK)
+    if (result != ORL_OK || report_on_stdout(o->json))
         return result;
-    job->count++;
-    if (report_on_stdout(o->json))
-        return ORL_OK;
-    if (job->count > 1)
+    if (index > 0)
         printf("\n");
     print_table(eval);
     if (call->common->verbose)
@@ -206,10 +203,10 @@ static enum orl_result measure_heldout(struct job *job, bool array)
     job->evals = orl_array(job->call->log, job->choices.count, sizeof *job->evals);
     enum orl_result result = job->evals ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; i < job->choices.count && result == ORL_OK; i++)
-        result = evaluate(job, &job->choices.items[i]);
+        result = evaluate(job, i);
     if (result == ORL_OK && o->json)
         result = report_write(job->call->log, o->json,
-                              orl_eval_to_json(job->call->log, job->evals, job->count, array));
+                              orl_eval_to_json(job->call->log, job->evals, job->choices.count, array));
     return result;
 }
 
@@ -271,11 +268,10 @@ static enum orl_result run_eval(struct call *call)
 {
     struct job job = {.call = call, .options = call->options};
     enum orl_result result = evaluate_scene(&job);
-    for (size_t i = 0; i < job.count; i++)
+    for (size_t i = 0; job.evals && i < job.choices.count; i++)
         orl_eval_finish(&job.evals[i]);
     free(job.evals);
     orl_choices_finish(&job.choices);
-    orl_hdr_destroy(&job.hdr);
     orl_truth_finish(&job.truth);
     return result;
 }

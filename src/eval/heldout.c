@@ -137,17 +137,14 @@ enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_render
                                     const struct orl_scene *scene,
                                     const struct orl_heldout *heldout,
                                     const struct orl_render_params *render, const bool *skip,
-                                    bool brief, struct orl_metrics *metrics)
+                                    double *psnr_db, double *ssim)
 {
     struct orl_image picture, coverage;
-    memset(metrics, 0, sizeof *metrics);
     enum orl_result result =
         orl_heldout_draw(log, renderer, scene, heldout, render, skip, &picture, &coverage);
-    if (result == ORL_OK && brief) {
-        metrics->psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
-        result = orl_metrics_ssim(log, &picture, &heldout->picture, &metrics->ssim);
-    } else if (result == ORL_OK) {
-        result = orl_metrics_compare(log, &picture, &heldout->picture, &coverage, metrics);
+    if (result == ORL_OK) {
+        *psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
+        result = orl_metrics_ssim(log, &picture, &heldout->picture, ssim);
     }
     orl_image_finish(&picture);
     orl_image_finish(&coverage);

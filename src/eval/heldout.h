@@ -48,12 +48,12 @@ enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer 
                                  struct orl_image *picture,
                                  struct orl_image *coverage) ORL_CHECK_RESULT;
 // Draws in the same way and compares the picture with the photograph. `scene` is the one that the
-// photograph was loaded from; the renderer may draw another of the same place. brief: PSNR and SSIM
-// alone; the other figures, which take longer than a fast frame, stay 0.
+// photograph was loaded from; the renderer may draw another of the same place. The other figures of
+// struct orl_metrics take longer than a fast frame.
 enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                     const struct orl_scene *scene,
                                     const struct orl_heldout *heldout,
                                     const struct orl_render_params *render, const bool *skip,
-                                    bool brief, struct orl_metrics *metrics) ORL_CHECK_RESULT;
+                                    double *psnr_db, double *ssim) ORL_CHECK_RESULT;
 
 #endif

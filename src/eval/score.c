@@ -25,12 +25,10 @@ enum orl_result orl_score_measure(const struct orl_log *log, struct orl_renderer
     *score = (struct orl_score){.views = orl_array(log, validation->count, sizeof *score->views)};
     enum orl_result result = score->views ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < validation->count; i++) {
-        struct orl_metrics m = {0};
         result = orl_progress_cancelled(progress)
                      ? ORL_ERR_CANCELLED
-                     : orl_validation_compare(log, renderer, validation, i, render, NULL, true, &m);
-        score->views[i][0] = m.psnr_db;
-        score->views[i][1] = m.ssim;
+                     : orl_validation_compare(log, renderer, validation, i, render, NULL,
+                                              &score->views[i][0], &score->views[i][1]);
         score->count += result == ORL_OK;
     }
     set_means(score);

@@ -48,7 +48,6 @@ static enum orl_result try_choice(struct orl_search *s, const struct orl_choice 
     orl_progress_report(s->params.progress, "search", done, total, trial->key);
     ORL_TRY(orl_score_measure(s->log, s->renderer, &s->validation, &choice->params, s->params.progress,
                               &score));
-    trial->method = choice->method;
     trial->psnr_db = score.psnr_db;
     trial->ssim = score.ssim;
     trial->kept = !s->score.count || orl_score_better(&score, &s->score, s->params.gain_db);

@@ -14,7 +14,6 @@ enum { ORL_SEARCH_DIVIDE_MAX = 16 };
 
 // One measured choice.
 struct orl_trial {
-    const struct orl_method *method;
     double psnr_db, ssim;              // means over the photographs, whole pictures
     const char *key;                   // the changed option; NULL: a start
     char value[ORL_OPTION_NAME_BYTES];

@@ -29,15 +29,14 @@ static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         struct orl_heldout view = {0};
-        struct orl_metrics m;
+        double psnr_db = 0, ssim = 0;
         if (!scene->photos[i].test)
             continue;
         result = orl_heldout_load(s->source.log, scene, i, s->params->size_divide, &view);
-        ORL_THEN(result, orl_heldout_compare(s->source.log, renderer, scene, &view, render, NULL, false, &m));
-        if (result == ORL_OK) {
-            figures->held_psnr_db += m.psnr_db / (double)held;
-            figures->held_ssim += m.ssim / (double)held;
-        }
+        ORL_THEN(result, orl_heldout_compare(s->source.log, renderer, scene, &view, render, NULL, &psnr_db,
+                                             &ssim));
+        figures->held_psnr_db += psnr_db / (double)held;
+        figures->held_ssim += ssim / (double)held;
         orl_heldout_finish(&view);
     }
     return result;

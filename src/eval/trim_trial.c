@@ -12,13 +12,11 @@
 static enum orl_result measure_view(struct trim_search *s, const struct trim_model *model,
                                     struct trim_standing *standing, size_t view)
 {
-    struct orl_metrics m;
+    struct trim_score *score = &standing->score[view];
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
-    ORL_TRY(orl_validation_compare(s->source.log, model->renderer, &s->targets, view, &standing->state.render,
-                                   standing->state.removed, true, &m));
-    standing->score[view] = (struct trim_score){m.psnr_db, m.ssim};
-    return ORL_OK;
+    return orl_validation_compare(s->source.log, model->renderer, &s->targets, view, &standing->state.render,
+                                  standing->state.removed, &score->db, &score->ssim);
 }
 
 double orl_trim_model_bytes(const struct trim_search *s, const struct trim_model *model,

@@ -127,10 +127,10 @@ void orl_validation_leave_out(const struct orl_scene *scene, size_t photo, const
 enum orl_result orl_validation_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                        const struct orl_validation *validation, size_t view,
                                        const struct orl_render_params *render, const bool *removed,
-                                       bool brief, struct orl_metrics *metrics)
+                                       double *psnr_db, double *ssim)
 {
     const struct orl_heldout *target = &validation->views[view];
     orl_validation_leave_out(&validation->scene, target->photo, removed, validation->skip);
     return orl_heldout_compare(log, renderer, &validation->scene, target, render, validation->skip,
-                               brief, metrics);
+                               psnr_db, ssim);
 }

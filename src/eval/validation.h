@@ -4,7 +4,6 @@
 #define ORL_EVAL_VALIDATION_H
 
 #include "eval/heldout.h"
-#include "eval/metrics.h"
 
 // Training photographs that a scene needs, to render one from two others.
 enum { ORL_VALIDATION_TRAIN_MIN = 3 };
@@ -43,7 +42,6 @@ void orl_validation_leave_out(const struct orl_scene *scene, size_t photo, const
 enum orl_result orl_validation_compare(const struct orl_log *log, struct orl_renderer *renderer,
                                        const struct orl_validation *validation, size_t view,
                                        const struct orl_render_params *render, const bool *removed,
-                                       bool brief,
-                                       struct orl_metrics *metrics) ORL_CHECK_RESULT;
+                                       double *psnr_db, double *ssim) ORL_CHECK_RESULT;
 
 #endif
