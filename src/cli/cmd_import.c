@@ -132,17 +132,12 @@ static enum orl_result run_import(struct call *call)
 {
     const struct import_options *o = call->options;
     const struct orl_log *log = call->log;
-    struct orl_import_params params = {ORL_IMPORT_DEFAULTS};
-    params.cameras = call->inputs[0];
-    params.out = o->out;
-    params.images_dir = o->images_dir;
-    params.masks_dir = o->masks_dir;
-    params.background = o->background;
+    struct orl_import_params params = {
+        ORL_IMPORT_DEFAULTS, .cameras = call->inputs[0], .out = o->out,
+        .images_dir = o->images_dir, .masks_dir = o->masks_dir, .background = o->background,
+        .max_size = o->max_size, .test_every = o->test_every, .test_list = &o->test_list,
+        .test_block = o->test_block};
     params.pixel_centre = o->pixel_centre;
-    params.max_size = o->max_size;
-    params.test_every = o->test_every;
-    params.test_list = &o->test_list;
-    params.test_block = o->test_block;
     params.densify.quality = o->quality;
     params.densify.shader_dir = call->common->shader_dir;
     params.densify.max_vram_bytes = o->max_vram_bytes;
