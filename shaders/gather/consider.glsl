@@ -27,7 +27,7 @@ sight consider(int i, photo source, spot s)
     z = backdrop ? s.p.z : z;
     sees = backdrop ? 1.0 : sees;
 #endif
-    float sure = sees * photo_border(source, pixel);
+    float sure = sees * photo_border(source, pixel) * (is_guess(s) ? photo_feather(source, pixel) : 1.0);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > 1e-4;
     // What does not paint is read all the same, with the weight 0.
     return sight(paints ? penalty / sure : NOT_SEEN, max(i, 0), paints ? pixel : vec2(0.0),

@@ -282,6 +282,39 @@ static void guesses_move_behind_what_photographs_see_past(void **state)
     assert_true(seen[1][2] > 0.9f && seen[1][0] < 0.1f);
 }
 
+// The share of dim green above a plate, at a column of the view, where depth is a guess. Two photographs from one
+// place paint there: a red one with the view's axis, and a green one, which ends at column 96.
+static double green_above_plate(int column)
+{
+    enum { POINTS = 64, WIDE = 2 * SIDE, END = 96 };
+    static const uint8_t dim_red[3] = {128, 0, 0}, dim_green[3] = {0, 128, 0};
+    struct fixture f;
+    setup_empty(&f, WALL_Z);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, POINTS * POINTS), ORL_OK);
+    set_square(&f.scene.points, 0, POINTS, 2.4, -0.6, (float)WALL_Z, blue);
+    struct orl_view left = look_from(0.2, 0, 0, WIDE, FOCAL);
+    left.camera.cx = WIDE - (END - SIDE / 2);
+    add_photo(&f, look_from(0.2, 0, 0, WIDE, FOCAL), dim_red);
+    add_photo(&f, left, dim_green);
+    struct orl_render_params params = with_depths(0);
+    params.guess_blur = 0;
+    struct orl_frame frame = draw(gpu, &f, look_from(0.2, 0, 0, SIDE, FOCAL), &params, 0);
+    const float *seen = color_at(&frame, column, 8);
+    double share = (double)(seen[1] / (seen[0] + seen[1]));
+    orl_frame_finish(&frame);
+    teardown(&f);
+    return share;
+}
+
+static void guesses_are_feathered(void **state)
+{
+    (void)state;
+    double inside = green_above_plate(10), at_border = green_above_plate(88);
+    print_message("green: %.2f, eight pixels from the border %.2f\n", inside, at_border);
+    assert_true(inside > 0.4 && inside < 0.7);
+    assert_true(at_border > 0.02 && at_border < 0.8 * inside);
+}
+
 // A green plate at the lower left before blue, in a photograph of the lower half of the view. What is above is not in
 // any photograph, and is background nearly always: the share of blue there, at the centre of the left.
 static void what_no_photograph_shows_is_background(void **state)
@@ -324,6 +357,7 @@ int main(void)
         cmocka_unit_test(guesses_change_without_a_line),
         cmocka_unit_test(guesses_continue_slanting_surfaces),
         cmocka_unit_test(guesses_move_behind_what_photographs_see_past),
+        cmocka_unit_test(guesses_are_feathered),
         cmocka_unit_test(what_no_photograph_shows_is_background),
     };
     int failed = cmocka_run_group_tests_name("guess", tests, NULL, NULL);
