@@ -31,8 +31,8 @@ float photo_beside(float penalty)
     return clamp(3.0 * (1.0 - penalty / GUESS_PENALTY_MAX), GUESS_FAR, 1.0);
 }
 
-// Where the depth is only estimated, a photograph counts less towards its border (feathering, Szeliski 2006, 6.2):
-// what it shows there stands elsewhere in other photographs, and its border would be seen. 1 in the middle.
+// Weight of a photograph where the depth is only estimated: 1 in its middle, 0.7 at its border (feathering, Szeliski
+// 2006, 6.2). Photographs differ in what they show there, so the border of one would be seen as a line.
 float photo_feather(photo source, vec2 pixel)
 {
     vec2 side = min(pixel, source.size.xy - pixel) / source.size.xy;
