@@ -1,208 +1,199 @@
-// Depth for surfaces without texture, such as plain walls and doors, from the surfaces around them:
-// the planar prior of Xu and Tao 2020 (ACMP) in its simplest form. It applies only where the
-// photograph shows no edge between a pixel and the surface whose plane the pixel takes.
+// Depth for surfaces without texture, such as plain walls and signs, from the surfaces around them. As the planar
+// prior of ACMP (Xu and Tao 2020) it continues planes, but what is around reaches a pixel by a diffusion whose
+// conductivity falls at the edges of the photograph (Perona and Malik 1990), so that it passes around print,
+// stains and handrails, and not from a wall to the sky.
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "preprocess/densify/densify_internal.h"
 
 enum {
-    DIRECTIONS = 8,
-    REACH_SHARE = 12, // longest search, as a divisor of the photograph's longer side
-    STRIDE = 2,       // pixels between samples of the search
-    BEYOND = 4,       // pixels by which the surface must continue behind its first sample: the rim
-                      // of depth around an object before the sky is narrower
-    AGREEING_MIN = 3, // least number of agreeing directions
-    LUMA_MAX = 10,    // greatest change of luma along the way, of 255
+    MARGIN = 3,       // pixels by which reliable depth lies inside all depth: its rim may reach past outlines
+    REACH_SHARE = 12, // how far a surface is continued, as a divisor of the photograph's longer side,
+    REACH_MAX = 80,   // and at most, pixels, which bounds the time
 };
 
-static const float SAME_PLANE = 0.01f; // as a fraction of depth
-static const float CONFIDENCE = 0.2f;  // of a completed pixel
-// Least confidence of the surface: false matches in the sky, which is as plain, rarely reach it.
+// Least confidence of reliable depth: false matches in the sky, which is as plain, rarely reach it.
 static const float CONFIDENCE_MIN = 0.6f;
+static const float CONFIDENCE = 0.2f; // of a completed pixel
+// Difference of luma between two pixels, of 255, at which conductivity has fallen to 1/e.
+static const float EDGE = 6.0f;
+// A pixel is completed if so large a share of what it could receive has not been lost on the way,
+static const float SURE_MIN = 0.75f;
+// if it has the luma of the surfaces around it up to this difference,
+static const float LUMA_MAX = 10.0f;
+// and if the depths of their planes, continued to it, have at most this standard deviation, as a fraction.
+static const float SAME_PLANE = 0.02f;
 
-// A surface found in some direction, extended to the pixel that is completed.
-struct met {
-    float depth; // of its plane at that pixel; 0: none
-    const float *normal;
-    float nearness;
+// What a pixel receives, floats alone. All members but `sure` are multiplied by it.
+struct received {
+    float sure; // 1: all that it could
+    float luma;
+    float plane[3];   // p: p . (x, y, 1) is the inverse depth at the image position (x, y)
+    float squares[6]; // of p: xx, yy, zz, xy, yz, zx
+};
+enum { MEMBERS = sizeof(struct received) / sizeof(float) };
+
+// A pixel that receives.
+struct receiver {
+    struct received *own;
+    float share[4]; // of what the pixels to its left, to its right, above and below it have
 };
 
-struct completion {
-    const struct densify_job *job;
-    const struct densify_maps *maps; // before completion: completed pixels are no evidence
+struct diffusion {
+    const struct densify_maps *maps; // before completion
     const struct orl_image *luma;
     struct orl_camera camera;
-    int reach; // longest search, pixels
+    float reach;                // pixels
+    struct received *received;  // of width + 2 by height + 2 pixels: its border has nothing; owned
+    struct receiver *receivers; // owned
+    size_t receiver_count;
 };
 
-// Depth of the plane of pixel `from` at pixel `to`; 0 when the plane is seen edge on or lies behind
-// the camera.
-static float depth_at(const struct completion *c, size_t from, size_t to)
+static size_t index_of(const struct diffusion *d, int x, int y)
 {
-    const float *n = &c->maps->normal.f32[3 * from];
-    size_t width = (size_t)c->luma->width;
-    float along[2];
-    for (int k = 0; k < 2; k++) {
-        size_t at = k ? to : from;
-        float x = (float)(((double)(at % width) + 0.5 - c->camera.cx) / c->camera.fx);
-        float y = (float)(((double)(at / width) + 0.5 - c->camera.cy) / c->camera.fy);
-        along[k] = n[0] * x + n[1] * y + n[2];
-    }
-    // Normals towards the camera have along < 0.
-    return along[0] < 0.0f && along[1] < 0.2f * along[0]
-               ? c->maps->depth.f32[from] * along[0] / along[1] : 0.0f;
+    return (size_t)y * (size_t)d->luma->width + (size_t)x;
 }
 
-static bool inside(const struct completion *c, int x, int y)
+static struct received *received_at(const struct diffusion *d, int x, int y)
 {
-    return x >= 0 && y >= 0 && x < c->luma->width && y < c->luma->height;
+    return d->received + ((size_t)y + 1) * ((size_t)d->luma->width + 2) + (size_t)x + 1;
 }
 
-static struct met look(const struct completion *c, int x, int y, int dx, int dy)
+static bool inside(const struct diffusion *d, int x, int y)
 {
-    const struct met none = {0};
-    const float *depth = c->maps->depth.f32;
-    size_t width = (size_t)c->luma->width, at = (size_t)y * width + (size_t)x;
-    for (int r = STRIDE; r <= c->reach; r += STRIDE) {
-        int u = x + r * dx, v = y + r * dy;
-        if (!inside(c, u, v))
-            return none;
-        size_t there = (size_t)v * width + (size_t)u;
-        if (abs(c->luma->u8[there] - c->luma->u8[at]) > LUMA_MAX)
-            return none;
-        if (!(depth[there] > 0.0f))
-            continue;
-        u += BEYOND * dx;
-        v += BEYOND * dy;
-        if (!inside(c, u, v))
-            return none;
-        size_t beyond = (size_t)v * width + (size_t)u;
-        float expected = depth_at(c, there, beyond);
-        if (abs(c->luma->u8[beyond] - c->luma->u8[at]) > LUMA_MAX ||
-            !(fabsf(depth[beyond] - expected) < SAME_PLANE * expected) ||
-            !(c->maps->confidence.f32[beyond] > CONFIDENCE_MIN))
-            return none;
-        return (struct met){depth_at(c, beyond, at), &c->maps->normal.f32[3 * beyond],
-                            1.0f / (float)r};
-    }
-    return none;
+    return x >= 0 && y >= 0 && x < d->luma->width && y < d->luma->height;
 }
 
-// True when a source sees through the point to something clearly farther.
-static bool seen_through(const struct completion *c, int x, int y, float depth)
+// Image position of a pixel's centre.
+static void image_position(const struct diffusion *d, int x, int y, float out[3])
 {
-    const struct orl_view own = {c->camera, c->job->view.cam_from_world};
-    double world[3], pixel[2], expected;
-    orl_view_unproject(&own, x + 0.5, y + 0.5, depth, world);
-    for (int s = 0; s < c->job->plan->count; s++) {
-        const struct orl_image *map = &c->job->source_depths[s];
-        struct orl_view view = c->job->source_views[s];
-        if (!map->data)
-            continue;
-        view.camera = orl_densify_level_camera(&c->job->sources[s]->camera, c->job->finest);
-        if (!orl_view_project(&view, world, pixel, &expected) || !(pixel[0] >= 0.0) ||
-            !(pixel[1] >= 0.0) || pixel[0] >= map->width || pixel[1] >= map->height)
-            continue;
-        float seen = map->f32[(size_t)pixel[1] * (size_t)map->width + (size_t)pixel[0]];
-        if (seen > 1.05 * expected)
-            return true;
-    }
-    return false;
+    out[0] = (float)((x + 0.5 - d->camera.cx) / d->camera.fx);
+    out[1] = (float)((y + 0.5 - d->camera.cy) / d->camera.fy);
+    out[2] = 1.0f;
 }
 
-// Surfaces seen on one side only would grow into the sky, so every half of the directions must hold
-// one that agrees.
-static bool surrounded(const bool agrees[DIRECTIONS])
+static float dot(const float a[3], const float b[3])
 {
-    int run = 0;
-    for (int k = 0; k < 2 * DIRECTIONS; k++) {
-        run = agrees[k % DIRECTIONS] ? 0 : run + 1;
-        if (run >= DIRECTIONS / 2)
-            return false;
-    }
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static bool deep_inside(const struct diffusion *d, int x, int y)
+{
+    for (int v = y - MARGIN; v <= y + MARGIN; v++)
+        for (int u = x - MARGIN; u <= x + MARGIN; u++)
+            if (inside(d, u, v) && !(d->maps->depth.f32[index_of(d, u, v)] > 0.0f))
+                return false;
     return true;
 }
 
-// Finds the plane on which most directions agree. Returns its depth, 0 when too few agree.
-static float agreed_plane(const struct met met[DIRECTIONS], float normal[3])
+// What reliable depth hands on; false where there is none.
+static bool hand_on(const struct diffusion *d, int x, int y, struct received *out)
 {
-    int best = 0, most = 0;
-    for (int i = 0; i < DIRECTIONS; i++) {
-        int count = 0;
-        for (int k = 0; k < DIRECTIONS; k++)
-            count += met[k].depth > 0.0f &&
-                     fabsf(met[k].depth - met[i].depth) < SAME_PLANE * met[i].depth;
-        if (count > most) {
-            most = count;
-            best = i;
-        }
-    }
-    bool agrees[DIRECTIONS];
-    for (int k = 0; k < DIRECTIONS; k++)
-        agrees[k] = met[k].depth > 0.0f &&
-                    fabsf(met[k].depth - met[best].depth) < SAME_PLANE * met[best].depth;
-    if (most < AGREEING_MIN || !surrounded(agrees))
-        return 0.0f;
-    float sum = 0.0f, total = 0.0f, direction[3] = {0}, square = 0.0f;
-    for (int k = 0; k < DIRECTIONS; k++) {
-        if (!agrees[k])
-            continue;
-        sum += met[k].nearness * met[k].depth;
-        total += met[k].nearness;
-        for (int i = 0; i < 3; i++)
-            direction[i] += met[k].nearness * met[k].normal[i];
-    }
-    for (int i = 0; i < 3; i++)
-        square += direction[i] * direction[i];
-    for (int i = 0; i < 3; i++)
-        normal[i] = direction[i] / sqrtf(fmaxf(square, 1e-20f));
-    return sum / total;
+    static const float edge_on = 0.05f;
+    size_t at = index_of(d, x, y);
+    const float *normal = &d->maps->normal.f32[3 * at];
+    float position[3], p[3];
+    image_position(d, x, y, position);
+    float facing = -dot(normal, position);
+    if (!(d->maps->confidence.f32[at] > CONFIDENCE_MIN) || !(facing > edge_on) || !deep_inside(d, x, y))
+        return false;
+    for (int k = 0; k < 3; k++)
+        p[k] = -normal[k] / (facing * d->maps->depth.f32[at]);
+    *out = (struct received){1.0f, d->luma->u8[at], {p[0], p[1], p[2]},
+                             {p[0] * p[0], p[1] * p[1], p[2] * p[2], p[0] * p[1], p[1] * p[2], p[2] * p[0]}};
+    return true;
 }
 
-static float complete_pixel(const struct completion *c, int x, int y, float normal[3])
+static float conductivity(const struct diffusion *d, int x, int y, int u, int v)
 {
-    static const int dx[DIRECTIONS] = {1, 1, 0, -1, -1, -1, 0, 1};
-    static const int dy[DIRECTIONS] = {0, 1, 1, 1, 0, -1, -1, -1};
-    struct met met[DIRECTIONS];
-    int count = 0;
-    for (int k = 0; k < DIRECTIONS && count + DIRECTIONS - k >= AGREEING_MIN; k++) {
-        met[k] = look(c, x, y, dx[k], dy[k]);
-        count += met[k].depth > 0.0f;
-    }
-    if (count < AGREEING_MIN)
+    if (!inside(d, u, v))
         return 0.0f;
-    float depth = agreed_plane(met, normal);
-    return depth > 0.0f && !seen_through(c, x, y, depth) ? depth : 0.0f;
+    float off = ((float)d->luma->u8[index_of(d, x, y)] - (float)d->luma->u8[index_of(d, u, v)]) / EDGE;
+    return expf(-off * off);
+}
+
+static struct receiver receiver_at(const struct diffusion *d, int x, int y)
+{
+    struct receiver r = {.own = received_at(d, x, y)};
+    float sum = 1.0f / (d->reach * d->reach); // lost
+    for (int k = 0; k < 4; k++) {
+        r.share[k] = conductivity(d, x, y, x + (k == 1) - (k == 0), y + (k == 3) - (k == 2));
+        sum += r.share[k];
+    }
+    for (int k = 0; k < 4; k++)
+        r.share[k] /= sum;
+    return r;
+}
+
+static void receive(const struct receiver *r, ptrdiff_t row, float relaxation)
+{
+    float *own = (float *)r->own;
+    const float *from[4] = {own - MEMBERS, own + MEMBERS, own - row * MEMBERS, own + row * MEMBERS};
+    for (int k = 0; k < MEMBERS; k++) {
+        float next = r->share[0] * from[0][k] + r->share[1] * from[1][k] + r->share[2] * from[2][k] +
+                     r->share[3] * from[3][k];
+        own[k] += relaxation * (next - own[k]);
+    }
+}
+
+// Successive over-relaxation (Young 1954). The best factor and the number of sweeps follow from the loss of
+// 1 / reach^2 a pixel.
+static void diffuse(const struct diffusion *d)
+{
+    int sweeps = (int)(2.5f * d->reach) + 1;
+    float relaxation = 2.0f / (1.0f + 0.7f / d->reach);
+    for (int sweep = 0; sweep < sweeps; sweep++)
+        for (size_t i = 0; i < d->receiver_count; i++)
+            receive(&d->receivers[i], d->luma->width + 2, relaxation);
+}
+
+// Sets the depth and the normal of an open pixel if what it receives agrees.
+static void complete_pixel(const struct diffusion *d, int x, int y, struct densify_maps *maps)
+{
+    size_t at = index_of(d, x, y);
+    const struct received *r = received_at(d, x, y);
+    const float *n = r->plane, *q = r->squares;
+    float p[3];
+    image_position(d, x, y, p);
+    float inverse = dot(n, p) / r->sure, off = r->luma / r->sure - d->luma->u8[at];
+    float square = (q[0] * p[0] * p[0] + q[1] * p[1] * p[1] + q[2] +
+                    2.0f * (q[3] * p[0] * p[1] + q[4] * p[1] + q[5] * p[0])) / r->sure;
+    bool agree = square - inverse * inverse < SAME_PLANE * SAME_PLANE * inverse * inverse;
+    if (!(r->sure > SURE_MIN) || !(fabsf(off) < LUMA_MAX) || !(inverse > 0.0f) || !agree)
+        return;
+    float length = sqrtf(dot(n, n));
+    maps->depth.f32[at] = 1.0f / inverse;
+    maps->confidence.f32[at] = CONFIDENCE;
+    for (int k = 0; k < 3; k++)
+        maps->normal.f32[3 * at + (size_t)k] = -n[k] / length;
 }
 
 enum orl_result orl_densify_complete(const struct orl_log *log, const struct densify_job *job,
                                      struct densify_maps *maps)
 {
-    struct completion c = {.job = job, .maps = maps,
-                           .luma = &job->reference->levels[job->finest],
-                           .camera = orl_densify_level_camera(&job->reference->camera,
-                                                              job->finest)};
-    int width = c.luma->width, height = c.luma->height;
-    c.reach = (width > height ? width : height) / REACH_SHARE;
-    size_t count = (size_t)width * (size_t)height;
-    float *found = orl_array(log, count, 4 * sizeof *found); // normal, depth
-    ORL_TRY_MEMORY(found);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            size_t at = (size_t)y * (size_t)width + (size_t)x;
-            if (!(maps->depth.f32[at] > 0.0f) && orl_densify_mask_at(&job->mask, job->finest, x, y))
-                found[4 * at + 3] = complete_pixel(&c, x, y, &found[4 * at]);
-        }
-    for (size_t at = 0; at < count; at++) {
-        if (!(found[4 * at + 3] > 0.0f))
-            continue;
-        memcpy(&maps->normal.f32[3 * at], &found[4 * at], 3 * sizeof *found);
-        maps->depth.f32[at] = found[4 * at + 3];
-        maps->confidence.f32[at] = CONFIDENCE;
-    }
-    free(found);
-    return ORL_OK;
+    const struct orl_image *luma = &job->reference->levels[job->finest];
+    int width = luma->width, height = luma->height;
+    size_t pixels = (size_t)width * (size_t)height;
+    struct diffusion d = {.maps = maps, .luma = luma,
+                          .camera = orl_densify_level_camera(&job->reference->camera, job->finest),
+                          .reach = fminf((float)(width > height ? width : height) / REACH_SHARE, REACH_MAX),
+                          .received = orl_array(log, ((size_t)width + 2) * ((size_t)height + 2),
+                                                sizeof *d.received),
+                          .receivers = orl_array(log, pixels, sizeof *d.receivers)};
+    enum orl_result result = d.received && d.receivers ? ORL_OK : ORL_ERR_MEMORY;
+    for (int y = 0; result == ORL_OK && y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (!hand_on(&d, x, y, received_at(&d, x, y)))
+                d.receivers[d.receiver_count++] = receiver_at(&d, x, y);
+    if (result == ORL_OK)
+        diffuse(&d);
+    for (int y = 0; result == ORL_OK && y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (!(maps->depth.f32[index_of(&d, x, y)] > 0.0f) && orl_densify_mask_at(&job->mask, job->finest, x, y))
+                complete_pixel(&d, x, y, maps);
+    free(d.received);
+    free(d.receivers);
+    return result;
 }
