@@ -7,11 +7,13 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "gpu/shader_table.h"
 #include "walk/internal.h"
 #include "walk/web_table.h"
 
 static const char index_name[] = "index.html";
+// Of the renderer's shaders those that the page includes.
 static const char *const shared_shaders[] = {
     "edges/edge.glsl", "edges/speck.glsl", "fill/slope.glsl", "fill/softened.glsl", "gather/backdrop.glsl",
     "gather/bicubic.glsl", "gather/blend.glsl", "gather/candidates.glsl", "gather/consider.glsl",
@@ -215,15 +217,6 @@ static enum orl_result write_index(struct site *site)
 
 static const char own_shaders[] = "shaders/"; // in the table of the page's files
 
-// True for files of the renderer's shaders that the page includes.
-static bool is_shared(const char *name)
-{
-    for (int i = 0; shared_shaders[i]; i++)
-        if (strcmp(name, shared_shaders[i]) == 0)
-            return true;
-    return false;
-}
-
 // All shaders in one file, their text by name: a request for each would hold up the first picture.
 static enum orl_result write_shaders(struct site *site)
 {
@@ -233,7 +226,7 @@ static enum orl_result write_shaders(struct site *site)
         if (strncmp(f->name, own_shaders, prefix) == 0)
             json_object_set_new(shaders, f->name + prefix, json_string(f->text));
     for (const struct orl_shader_file *f = orl_shader_table; f->name; f++)
-        if (is_shared(f->name))
+        if (orl_text_is_one_of(f->name, shared_shaders))
             json_object_set_new(shaders, f->name, json_string(f->text));
     char *text = json_dumps(shaders, JSON_COMPACT);
     enum orl_result result = text ? write_first(site, "shaders.json", text) : ORL_ERR_MEMORY;

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/text.h"
 #include "oriel/path.h"
 #include "render/output/sequence.h"
 #include "walk/internal.h"
@@ -14,15 +15,11 @@ enum { WIDTH = 1280, HEIGHT = 720, FPS = 24, FRAMES_MAX = 100000, NUMBER_MAX = 9
 
 bool orl_walk_rendering_asked(const json_t *message)
 {
-    static const char *const formats[] = {"mp4", "png", "exr"};
+    static const char *const formats[] = {"mp4", "png", "exr", NULL};
     struct orl_tone_params tone;
     const char *format = orl_json_text(message, "format");
-    if (!orl_walk_tone_read(message, &tone))
-        return false;
-    for (size_t i = 0; format && i < ORL_COUNT(formats); i++)
-        if (strcmp(format, formats[i]) == 0)
-            return json_is_object(json_object_get(message, "render"));
-    return false;
+    return format && orl_text_is_one_of(format, formats) && orl_walk_tone_read(message, &tone) &&
+           json_is_object(json_object_get(message, "render"));
 }
 
 // One rendering while it runs.

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/json.h"
+#include "core/text.h"
 #include "scene/json_views.h"
 
 enum { TITLE_MAX = 500, TEXT_MAX = 4000, NOTES_MAX = 200, TOUR_VIEWS_MAX = 2000,
@@ -71,13 +72,12 @@ static bool is_view(const json_t *json)
 
 static bool are_modes(const json_t *modes)
 {
+    static const char *const names[] = {"walk", "fly", "orbit", NULL};
     size_t i;
     json_t *mode;
-    json_array_foreach(modes, i, mode) {
-        const char *name = json_string_value(mode);
-        if (!name || (strcmp(name, "walk") != 0 && strcmp(name, "fly") != 0 && strcmp(name, "orbit") != 0))
+    json_array_foreach(modes, i, mode)
+        if (!json_is_string(mode) || !orl_text_is_one_of(json_string_value(mode), names))
             return false;
-    }
     return json_array_size(modes) > 0;
 }
 
