@@ -96,10 +96,8 @@ enum orl_result orl_content_init(const struct orl_log *log, const struct orl_sce
 
 enum orl_result orl_content_change(struct content *content, json_t *settings)
 {
-    enum orl_result result = orl_walk_settings_check(content->log, "a client's settings", settings);
-    ORL_THEN(result, orl_walk_settings_write(content->log, content->scene, settings));
-    if (result != ORL_OK)
-        return result;
+    ORL_TRY(orl_walk_settings_check(content->log, "a client's settings", settings));
+    ORL_TRY(orl_walk_settings_write(content->log, content->scene, settings));
     json_decref(content->settings);
     content->settings = json_incref(settings);
     return make_texts(content);

@@ -144,13 +144,11 @@ static enum orl_result draw_time_step(struct walk_renderer *walk,
                                       const struct orl_render_params *params,
                                       struct orl_frame *frame)
 {
-    enum orl_result result =
-        orl_scene_set_frame(walk->log, walk->scene, time_step_of(walk->scene, request->time_step));
+    ORL_TRY(orl_scene_set_frame(walk->log, walk->scene, time_step_of(walk->scene, request->time_step)));
     int next = time_step_of(walk->scene, request->expected);
-    if (result == ORL_OK && next != walk->scene->frame)
+    if (next != walk->scene->frame)
         orl_renderer_expect(walk->renderer, next);
-    return result == ORL_OK ? orl_renderer_draw(walk->renderer, &request->view, params, NULL, frame)
-                            : result;
+    return orl_renderer_draw(walk->renderer, &request->view, params, NULL, frame);
 }
 
 static enum orl_result draw_timed(struct walk_renderer *walk, const struct walk_request *request,

@@ -173,13 +173,12 @@ static void say_late(const struct orl_live_cameras *cameras, bool waits, double 
 
 static enum orl_result copy_paths(const struct orl_live_cameras *cameras, char **paths)
 {
-    enum orl_result result = ORL_OK;
     for (size_t i = 0; i < cameras->count; i++) {
         free(paths[i]);
         paths[i] = orl_strdup(cameras->log, cameras->cameras[i].oldest->path);
-        result = paths[i] ? result : ORL_ERR_MEMORY;
+        ORL_TRY_MEMORY(paths[i]);
     }
-    return result;
+    return ORL_OK;
 }
 
 // May a picture belong to the next time step, with a camera that has none of the oldest number?

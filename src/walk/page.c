@@ -237,14 +237,11 @@ static enum orl_result write_shaders(struct site *site)
 
 enum orl_result orl_site_page(struct site *site)
 {
-    enum orl_result result = write_index(site);
-    for (const struct orl_web_file *f = orl_web_table; result == ORL_OK && f->name; f++) {
-        if (strcmp(f->name, index_name) == 0 ||
-            strncmp(f->name, own_shaders, strlen(own_shaders)) == 0)
-            continue;
-        result = write_first(site, f->name, f->text);
-    }
-    return result == ORL_OK ? write_shaders(site) : result;
+    ORL_TRY(write_index(site));
+    for (const struct orl_web_file *f = orl_web_table; f->name; f++)
+        if (strcmp(f->name, index_name) != 0 && strncmp(f->name, own_shaders, strlen(own_shaders)) != 0)
+            ORL_TRY(write_first(site, f->name, f->text));
+    return write_shaders(site);
 }
 
 // --- the site as one file ---

@@ -127,9 +127,9 @@ static enum orl_result make_renderer(struct site *site)
 
 static enum orl_result replace_site(const struct site *site, struct orl_new_dir *dir)
 {
-    enum orl_result result = orl_site_list(site);
-    ORL_THEN(result, orl_site_keep(site, dir->out));
-    return result == ORL_OK ? orl_new_dir_replace(site->log, dir) : result;
+    ORL_TRY(orl_site_list(site));
+    ORL_TRY(orl_site_keep(site, dir->out));
+    return orl_new_dir_replace(site->log, dir);
 }
 
 enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,

@@ -157,14 +157,13 @@ static enum orl_result find_room(struct site *site, const struct orl_points *hul
     site->room = site->scene->room;
     if (site->room.known)
         return ORL_OK;
-    enum orl_result result = orl_vertices_range(site->log, (const float (*)[3])hull->position,
-                                                hull->count, 0.02, low, high);
+    ORL_TRY(orl_vertices_range(site->log, (const float (*)[3])hull->position, hull->count, 0.02, low, high));
     orl_room_measure(site->scene, low, high, middle, half);
     for (int k = 0; k < 3; k++) {
         site->room.low[k] = middle[k] - half[k];
         site->room.high[k] = middle[k] + half[k];
     }
-    return result;
+    return ORL_OK;
 }
 
 // Points where a photograph shows the room: its picture of the empty place, else what is beside the
