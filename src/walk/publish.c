@@ -110,10 +110,7 @@ static enum orl_result write_site(struct site *site)
 // its depth.
 static enum orl_result make_renderer(struct site *site)
 {
-    const struct orl_method *li = orl_method_find(site->log, "li");
-    if (!li)
-        return ORL_ERR_NOT_FOUND;
-    site->subject = li->params;
+    site->subject = orl_method_find(site->log, "li")->params;
     site->carves = orl_scene_silhouettes(site->scene) && !site->params->radiance &&
                    (site->scene->frame_count || !orl_scene_point_count(site->scene));
     orl_render_params_tuned(site->log, &orl_methods[0], site->scene, &site->render);

@@ -152,10 +152,7 @@ static enum orl_result pack_depth(const struct orl_log *log, const struct orl_im
 static enum orl_result draw_depth(struct site *site, const struct orl_view *view,
                                   struct orl_image *depth)
 {
-    const struct orl_method *points = orl_method_find(site->log, "points");
-    if (!points)
-        return ORL_ERR_NOT_FOUND;
-    struct orl_render_params params = site->carves ? site->subject : points->params;
+    struct orl_render_params params = site->carves ? site->subject : orl_method_find(site->log, "points")->params;
     params.fill = ORL_FILL_NONE;
     if (!site->carves) {
         params.splat_scale = site->render.splat_scale;
