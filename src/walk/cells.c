@@ -270,9 +270,6 @@ enum orl_result orl_site_scene_points(struct site *site, json_t **out)
     if (result == ORL_OK && site->carves)
         result = orl_site_room(site, &walls);
     ORL_THEN(result, orl_site_points(site, site->carves ? &walls : lod ? &level : &site->scene->points, most, out));
-    if (result == ORL_OK)
-        site->report->first_bytes +=
-            (size_t)json_integer_value(json_object_get(json_object_get(*out, "coarse"), "bytes"));
     orl_points_finish(&level);
     orl_points_finish(&walls);
     return result;

@@ -37,7 +37,7 @@ struct site {
 
 // A file of the site as in its manifest: {"file", "bytes"}. `path` is relative to the site. NULL,
 // logged: the file is missing.
-json_t *orl_site_file(struct site *site, const char *path);
+json_t *orl_site_file(const struct site *site, const char *path);
 enum orl_result orl_site_write(struct site *site, const char *path, const void *data, size_t size);
 
 // --- points (cells.c) ---

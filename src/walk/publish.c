@@ -16,23 +16,20 @@ enum orl_result orl_site_write(struct site *site, const char *path, const void *
     return orl_file_write(site->log, ORL_PATH(site->dir, "%s", path), data, size);
 }
 
-// False: the file is missing, and has no bytes.
-static bool find_bytes(const struct site *site, const char *path, size_t *bytes)
+// 0: the file is missing.
+static size_t bytes_of(const struct site *site, const char *path)
 {
     struct stat status;
-    bool there = stat(ORL_PATH(site->dir, "%s", path), &status) == 0;
-    *bytes = there ? (size_t)status.st_size : 0;
-    return there;
+    return stat(ORL_PATH(site->dir, "%s", path), &status) == 0 ? (size_t)status.st_size : 0;
 }
 
-json_t *orl_site_file(struct site *site, const char *path)
+json_t *orl_site_file(const struct site *site, const char *path)
 {
-    size_t bytes;
-    if (!find_bytes(site, path, &bytes)) {
+    if (!orl_path_is_file(ORL_PATH(site->dir, "%s", path))) {
         orl_logf(site->log, ORL_LOG_ERROR, "%s is missing in the site", path);
         return NULL;
     }
-    return json_pack("{s:s, s:I}", "file", path, "bytes", (json_int_t)bytes);
+    return json_pack("{s:s, s:I}", "file", path, "bytes", (json_int_t)bytes_of(site, path));
 }
 
 // --- the output ---
@@ -70,19 +67,20 @@ static enum orl_result make_folders(struct site *site)
 
 // --- the parts of the site ---
 
-static size_t site_bytes(const struct site *site)
+static size_t all_bytes(const struct site *site)
 {
     struct orl_names paths = {0};
-    size_t all = 0, bytes;
+    size_t all = 0;
     if (orl_site_files(site->log, site->dir, false, &paths) == ORL_OK)
         for (size_t i = 0; i < paths.count; i++)
-            all += find_bytes(site, paths.items[i], &bytes) ? bytes : 0;
+            all += bytes_of(site, paths.items[i]);
     orl_names_finish(&paths);
     return all;
 }
 
 static enum orl_result write_site(struct site *site)
 {
+    static const char *const first[] = {"points/coarse.bin", "poster.jpg", "manifest.json"}; // loaded after the page
     json_t *points = NULL, *photos = NULL, *steps = NULL, *soft = NULL;
     enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
     ORL_THEN(result, make_folders(site));
@@ -94,9 +92,10 @@ static enum orl_result write_site(struct site *site)
     if (result == ORL_OK && site->carves)
         result = orl_site_steps(site, &steps);
     if (result == ORL_OK) {
-        size_t poster;
-        site->report->first_bytes += find_bytes(site, "poster.jpg", &poster) ? poster : 0;
-        return orl_site_manifest(site, points, photos, steps, soft);
+        result = orl_site_manifest(site, points, photos, steps, soft);
+        for (size_t i = 0; i < ORL_COUNT(first); i++)
+            site->report->first_bytes += bytes_of(site, first[i]);
+        return result;
     }
     json_decref(points);
     json_decref(photos);
@@ -150,7 +149,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
     result = title ? make_renderer(&site) : ORL_ERR_MEMORY;
     ORL_THEN(result, write_site(&site));
     if (result == ORL_OK)
-        report->bytes = site_bytes(&site);
+        report->bytes = all_bytes(&site);
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
                                     : replace_site(&site, &dir);

@@ -6,7 +6,6 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
-#include "core/vec3.h"
 #include "scene/manifest.h"
 #include "scene/upright.h"
 #include "walk/internal.h"
@@ -121,9 +120,6 @@ enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *pho
         json_object_set_new(root, "radiance", json_pack("{s:f, s:f}", "peak", site->range.peak,
                                                         "mu", site->range.mu));
     enum orl_result result = orl_json_write(site->log, ORL_PATH(site->dir, "manifest.json"), root);
-    json_t *file = result == ORL_OK ? orl_site_file(site, "manifest.json") : NULL;
-    site->report->first_bytes += (size_t)json_integer_value(json_object_get(file, "bytes"));
-    json_decref(file);
     json_decref(root);
     return result;
 }
