@@ -128,15 +128,18 @@ static int end_file(struct lws *wsi, struct session *session)
     return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
+static bool add_header(struct lws *wsi, enum lws_token_indexes token, const char *value, unsigned char **at,
+                       unsigned char *end)
+{
+    return !lws_add_http_header_by_token(wsi, token, (const unsigned char *)value, (int)strlen(value), at, end);
+}
+
 // A body that came with the request is not read: the connection ends.
 static int refuse_method(struct lws *wsi)
 {
     unsigned char buffer[LWS_PRE + HEADERS], *at = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
-    static const char allowed[] = "GET, HEAD";
     bool told = !lws_add_http_header_status(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, &at, end) &&
-                !lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_ALLOW,
-                                              (const unsigned char *)allowed,
-                                              (int)strlen(allowed), &at, end) &&
+                add_header(wsi, WSI_TOKEN_HTTP_ALLOW, "GET, HEAD", &at, end) &&
                 !lws_add_http_header_content_length(wsi, 0, &at, end) &&
                 !lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end);
     (void)told; // the connection ends in any case
@@ -161,12 +164,9 @@ static int start_file(struct server *server, struct lws *wsi, struct session *se
     if (session->file.is_private && !has_token(server, wsi))
         return refuse(wsi, HTTP_STATUS_FORBIDDEN);
     session->written = 0;
-    static const char policy[] = "no-cache";
     if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, session->file.type, session->file.size,
                                     &at, end) ||
-        lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_CACHE_CONTROL,
-                                     (const unsigned char *)policy, (int)strlen(policy), &at,
-                                     end) ||
+        !add_header(wsi, WSI_TOKEN_HTTP_CACHE_CONTROL, "no-cache", &at, end) ||
         lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end))
         return -1;
     if (method == LWSHUMETH_HEAD)
@@ -184,11 +184,10 @@ static int continue_file(struct lws *wsi, struct session *session)
     bool last = session->written == session->file.size;
     if (lws_write(wsi, buffer + LWS_PRE, size, last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < 0)
         return -1;
-    if (!last) {
-        lws_callback_on_writable(wsi);
-        return 0;
-    }
-    return end_file(wsi, session);
+    if (last)
+        return end_file(wsi, session);
+    lws_callback_on_writable(wsi);
+    return 0;
 }
 
 // --- clients that walk ---

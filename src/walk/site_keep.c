@@ -129,10 +129,9 @@ end:
 enum orl_result orl_site_keep(const struct site *site, const char *old)
 {
     struct keeping k = {.log = site->log, .old = old, .new = site->dir};
-    enum orl_result result = ORL_OK;
     if (!orl_path_is_dir(old))
         return ORL_OK;
-    result = read_list(&k);
+    enum orl_result result = read_list(&k);
     ORL_THEN(result, keep(&k, ""));
     orl_names_finish(&k.listed);
     return result;
