@@ -1,5 +1,6 @@
 // Keyframes: views with seconds to the next one, and the views between them.
-import {mix, quatFromRotation, rotationFromQuat, slerp} from "./math.js";
+import {clamp} from "./math.js";
+import {mixViews} from "./view.js";
 
 export const SECONDS_A_KEY = 3; // from a keyframe to the next, until somebody sets another time
 
@@ -29,12 +30,10 @@ export function viewAt(keys, share)
 {
     const [i, t] = segmentAt(keys, share), own = secondsFrom(keys[i]);
     const times = [i > 0 ? secondsFrom(keys[i - 1]) : own, own, i < keys.length - 2 ? secondsFrom(keys[i + 1]) : own];
-    const key = n => keys[Math.min(Math.max(n, 0), keys.length - 1)], a = key(i), b = key(i + 1);
+    const key = n => keys[clamp(n, 0, keys.length - 1)], a = key(i), b = key(i + 1);
     const eye = [0, 1, 2].map(k => spline(key(i - 1).eye[k], a.eye[k], b.eye[k], key(i + 2).eye[k], times, t));
-    const frame = {};
-    for (const name of Object.keys(a.frame))
-        frame[name] = mix(a.frame[name], b.frame[name], t);
+    const view = {...mixViews(a, b, t), eye};
     for (const name of ["fx", "fy"]) // as orl_view_interpolate
-        frame[name] = a.frame[name] ** (1 - t) * b.frame[name] ** t;
-    return {eye, frame, r: rotationFromQuat(slerp(quatFromRotation(a.r), quatFromRotation(b.r), t))};
+        view.frame[name] = a.frame[name] ** (1 - t) * b.frame[name] ** t;
+    return view;
 }
