@@ -1,14 +1,11 @@
 // Photographs: which of them a view can use best, and those that are on the graphics chip.
-import {clamp, distance, dot, rotate, rotateBack, scale, sub} from "./math.js";
-import {unproject} from "./view.js";
+import {clamp, distance, dot, rotate, row, sub} from "./math.js";
+import {forwardOf, poseOf, project, unproject} from "./view.js";
 
 export function makePhotos(manifest)
 {
-    return manifest.photos.map((p, number) => {
-        const r = p.cam_from_world.flatMap(row => row.slice(0, 3));
-        const t = p.cam_from_world.map(row => row[3]);
-        return {...p, number, r, t, eye: scale(rotateBack(r, t), -1), slot: -1, hasSoft: false, loading: false, lastUse: 0};
-    });
+    return manifest.photos.map((p, number) =>
+        ({...p, ...poseOf(p.cam_from_world), number, slot: -1, hasSoft: false, lastUse: 0}));
 }
 
 // --- choice, as src/render/photos/select.c makes it ---
@@ -30,13 +27,9 @@ function samplePoints(camera, typical)
 // Inverse of the penalty; 0 where the photograph does not see the point.
 function score(photo, eye, point)
 {
-    const v = sub(photo.eye, point), q = rotate(photo.r, scale(v, -1));
-    if (!(q[2] > 0))
+    if (!project(photo, point))
         return 0;
-    const x = photo.fx * q[0] / q[2] + photo.cx, y = photo.fy * q[1] / q[2] + photo.cy;
-    if (!(x > 0 && y > 0 && x < photo.width && y < photo.height))
-        return 0;
-    const u = sub(eye, point), uu = dot(u, u), vv = dot(v, v);
+    const u = sub(eye, point), v = sub(photo.eye, point), uu = dot(u, u), vv = dot(v, v);
     const angle = Math.acos(clamp(dot(u, v) / Math.sqrt(uu * vv), -1, 1));
     const coarser = Math.sqrt(vv / uu) - 1;
     return 1 / (angle + 0.1 * Math.max(coarser, 0) + 0.005);
@@ -74,11 +67,11 @@ export function rankPhotos(photos, camera, typical)
 
 export function nearestPhoto(photos, view)
 {
-    const forward = view.r.slice(6);
+    const forward = forwardOf(view);
     // A photograph that looks elsewhere counts as farther away.
     const apart = p => distance(p.eye, view.eye);
     const most = Math.max(...photos.map(apart), 1e-9);
-    const cost = p => apart(p) / most + 0.5 * Math.acos(clamp(dot(forward, p.r.slice(6)), -1, 1));
+    const cost = p => apart(p) / most + 0.5 * Math.acos(clamp(dot(forward, forwardOf(p)), -1, 1));
     return photos.reduce((best, p) => cost(p) < cost(best) ? p : best, photos[0]);
 }
 
@@ -235,18 +228,12 @@ export class PhotoStore {
 // As struct photo of shaders/gather/photo.glsl.
 function describePhoto(photo, camera)
 {
-    const out = [];
-    const offset = rotate(photo.r, sub(camera.eye, photo.eye));
-    for (let i = 0; i < 3; i++) {
-        const axis = photo.r.slice(3 * i, 3 * i + 3);
-        out.push(...rotate(camera.r, axis), offset[i]);
-    }
-    const {width, height, depth} = photo;
-    out.push(...rotate(camera.r, sub(photo.eye, camera.eye)), photo.slot);
-    out.push(photo.fx, photo.fy, photo.cx, photo.cy);
-    out.push(width, height, depth.width, depth.height);
-    out.push(...photo.gain, 0);
-    out.push(...photo.vignette, 4 / (width * width + height * height));
-    out.push(photo.number, depth.nearest, 0, 0);
-    return out;
+    const {width, height, depth} = photo, offset = rotate(photo.r, sub(camera.eye, photo.eye));
+    return [...[0, 1, 2].flatMap(i => [...rotate(camera.r, row(photo.r, i)), offset[i]]),
+            ...rotate(camera.r, sub(photo.eye, camera.eye)), photo.slot,
+            photo.fx, photo.fy, photo.cx, photo.cy,
+            width, height, depth.width, depth.height,
+            ...photo.gain, 0,
+            ...photo.vignette, 4 / (width * width + height * height),
+            photo.number, depth.nearest, 0, 0];
 }

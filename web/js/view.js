@@ -27,6 +27,13 @@ export function frameHeight(frame, width, height)
     return width < height && frame.aspect > 1 ? Math.sqrt(contain * cover) : contain;
 }
 
+// The place and rotation that the rows of cam_from_world say.
+export function poseOf(rows)
+{
+    const r = rows.flatMap(line => line.slice(0, 3));
+    return {r, eye: scale(rotateBack(r, rows.map(line => line[3])), -1)};
+}
+
 // The camera of a view for a picture of this many pixels, as the renderer takes it.
 export function cameraOf(view, width, height)
 {
@@ -90,12 +97,10 @@ export function viewToKey({r, eye, frame})
 // null unless it is one; the frame is `frame`, its focal length aside.
 export function viewFromKey(key, frame)
 {
-    const rows = key.cam_from_world, fy = 0.5 / Math.tan(key.fov_y_deg * Math.PI / 360);
+    const fy = 0.5 / Math.tan(key.fov_y_deg * Math.PI / 360);
     if (!(fy > 0.05 && fy < 50))
         return null;
-    const r = rows.flatMap(line => line.slice(0, 3));
-    return {r, eye: scale(rotateBack(r, rows.map(line => line[3])), -1),
-            frame: {...frame, fx: fy * frame.fx / frame.fy, fy}};
+    return {...poseOf(key.cam_from_world), frame: {...frame, fx: fy * frame.fx / frame.fy, fy}};
 }
 
 // A key with the whole frame, so that a view at a photograph stays that photograph's.
