@@ -65,48 +65,40 @@ class Frame {
     constructor(device, width, height, planes, cells)
     {
         Object.assign(this, {device, width, height, targets: [], mipmapped: []});
-        const make = (...args) => {
-            const target = device.target(...args);
-            this.targets.push(target);
-            return target;
-        };
-        this.level0 = make(width, height, ["RGBA32F", "R32UI", "RGBA8"], {depth: true});
-        this.layer = make(width, height, ["RG16F"]);
-        this.pulled = [null];
-        this.pushed = [null];
-        for (let w = half(width), h = half(height); this.pulled.length < LEVELS_MAX; w = half(w), h = half(h)) {
-            this.pulled.push(make(w, h, ["RGBA32F", "RG32UI"]));
-            this.pushed.push(make(w, h, ["RGBA32F", "RG32UI"]));
-            if (w === 1 && h === 1)
-                break;
-        }
-        this.surface = make(width, height, ["R32F", "RGBA8"]);
-        this.supported = make(width, height, ["R32F", "RGBA8"]);
-        this.depth = make(width, height, ["R32F"]);
-        this.fillDepth = this.pyramid(make);
-        this.fillColor = this.pyramid(make);
-        this.tiles = make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
+        this.level0 = this.make(width, height, ["RGBA32F", "R32UI", "RGBA8"], {depth: true});
+        this.layer = this.make(width, height, ["RG16F"]);
+        const surfels = this.pyramid(["RGBA32F", "RG32UI"], LEVELS_MAX - 1); // above level0
+        this.pulled = [null, ...surfels.pulled];
+        this.pushed = [null, ...surfels.pushed];
+        this.surface = this.make(width, height, ["R32F", "RGBA8"]);
+        this.supported = this.make(width, height, ["R32F", "RGBA8"]);
+        this.depth = this.make(width, height, ["R32F"]);
+        this.fillDepth = this.pyramid(["RGBA32F"]); // floats: sums of a whole picture exceed what half floats hold
+        this.fillColor = this.pyramid(["RGBA32F"]);
+        this.tiles = this.make(Math.ceil(width / TILE), Math.ceil(height / TILE), ["RG32UI"]);
         if (planes > 1) {
             this.cell = cellSide(width, height, cells);
             const across = Math.ceil(width / this.cell), down = Math.ceil(height / this.cell);
-            this.costs = make(across * costTexels(planes), down, ["RGBA32F"]);
-            this.picked = make(across, down, ["R32F"]);
-            this.moved = make(width, height, ["R32F"]);
+            this.costs = this.make(across * costTexels(planes), down, ["RGBA32F"]);
+            this.picked = this.make(across, down, ["R32F"]);
+            this.moved = this.make(width, height, ["R32F"]);
         }
-        this.painted = make(width, height, ["RGBA16F", "RGBA8"]);
+        this.painted = this.make(width, height, ["RGBA16F", "RGBA8"]);
         const w = half(width), h = half(height);
         this.guesses = this.withLevels("RGBA16F", w, h);
-        this.seeds = make(w, h, [this.fillColor.pulled[0].textures[0], this.guesses]);
-        this.composed = make(width, height, ["RGBA16F"]);
+        this.seeds = this.make(w, h, [this.fillColor.pulled[0].textures[0], this.guesses]);
+        this.composed = this.make(width, height, ["RGBA16F"]);
+    }
+
+    // A target that is released with the frame.
+    make(...args)
+    {
+        this.targets.push(this.device.target(...args));
+        return this.targets.at(-1);
     }
 
     // The picture without specks, for views at rest.
-    get kept()
-    {
-        if (!this.keptTarget)
-            this.targets.push(this.keptTarget = this.device.target(this.width, this.height, ["RGBA16F"]));
-        return this.keptTarget;
-    }
+    get kept() { return this.keptTarget ||= this.make(this.width, this.height, ["RGBA16F"]); }
 
     withLevels(format, width, height)
     {
@@ -120,25 +112,25 @@ class Frame {
     get soft()
     {
         if (!this.softTargets) {
-            const make = texture => this.device.target(this.width, this.height, [texture]);
-            const blended = make(this.withLevels("RGBA16F", this.width, this.height));
-            const differs = make(this.withLevels("R16F", this.width, this.height));
-            this.softTargets = {blended, differs, mixed: make(this.painted.textures[0])};
-            this.targets.push(blended, differs, this.softTargets.mixed);
+            const make = texture => this.make(this.width, this.height, [texture]);
+            this.softTargets = {blended: make(this.withLevels("RGBA16F", this.width, this.height)),
+                                differs: make(this.withLevels("R16F", this.width, this.height)),
+                                mixed: make(this.painted.textures[0])};
         }
         return this.softTargets;
     }
 
-    // Of floats: sums of a whole picture exceed what half floats hold.
-    pyramid(make)
+    // From half the frame's size to a single pixel, or for so many levels.
+    pyramid(formats, levels = Infinity)
     {
         const pulled = [], pushed = [];
-        for (let w = half(this.width), h = half(this.height);; w = half(w), h = half(h)) {
-            pulled.push(make(w, h, ["RGBA32F"]));
-            pushed.push(make(w, h, ["RGBA32F"]));
+        for (let w = half(this.width), h = half(this.height); pulled.length < levels; w = half(w), h = half(h)) {
+            pulled.push(this.make(w, h, formats));
+            pushed.push(this.make(w, h, formats));
             if (w === 1 && h === 1)
-                return {pulled, pushed};
+                break;
         }
+        return {pulled, pushed};
     }
 
     release()
@@ -168,10 +160,9 @@ export class Renderer {
 
     resize(width, height)
     {
-        if (this.frame && this.frame.width === width && this.frame.height === height)
+        if (this.frame?.width === width && this.frame.height === height)
             return;
-        if (this.frame)
-            this.frame.release();
+        this.frame?.release();
         this.frame = new Frame(this.device, width, height, this.planes, this.shared.ORL_GUESS_CELLS);
     }
 
@@ -381,15 +372,12 @@ export class Renderer {
 
     // The last frame onto a place of its size: the canvas, or {fbo, x, y, width, height}, whose first row is the lowest.
     // whole: with all that moving frames go without
-    show(layer, whole, place = null) { this.showBy(this.programs.show, layer, whole, place); }
-
-    showBy(program, layer, whole, target)
+    show(layer, whole, place = null, program = this.programs.show)
     {
         const f = this.frame;
-        this.device.pass(program, target,
-                         {corner: target && target.x !== undefined ? [target.x, target.y] : [0, 0],
-                          composed: this.finished, depth: this.depth.textures[0],
-                          normals: this.normals, source: f.painted.textures[1],
+        this.device.pass(program, place,
+                         {corner: [place?.x || 0, place?.y || 0], composed: this.finished,
+                          depth: this.depth.textures[0], normals: this.normals, source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
                           exposure: this.exposure, tone: this.tone,
                           footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance && !this.corrected});
@@ -401,7 +389,7 @@ export class Renderer {
         const gl = this.device.gl, {width, height} = camera;
         this.draw(camera, layer, true);
         const target = this.device.target(width, height, ["RGBA8"]);
-        this.showBy(this.programs.capture(), layer, true, target);
+        this.show(layer, true, target, this.programs.capture());
         const bytes = new Uint8ClampedArray(4 * width * height);
         gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
         this.device.releaseTarget(target);
