@@ -160,10 +160,10 @@ export class Device {
 
     begin(target)
     {
-        const gl = this.gl;
-        gl.bindFramebuffer(gl.FRAMEBUFFER, target ? target.fbo : null);
-        gl.viewport((target && target.x) || 0, (target && target.y) || 0, target ? target.width : gl.drawingBufferWidth,
-                    target ? target.height : gl.drawingBufferHeight);
+        const gl = this.gl, {fbo, x = 0, y = 0, width, height} = target || {
+            fbo: null, width: gl.drawingBufferWidth, height: gl.drawingBufferHeight};
+        gl.bindFramebuffer(gl.FRAMEBUFFER, fbo);
+        gl.viewport(x, y, width, height);
     }
 
     clear(target)
@@ -208,11 +208,7 @@ class Program {
     }
 
     // Its uniforms by name, once it is linked.
-    get uniforms()
-    {
-        this.linked ||= this.finish();
-        return this.linked;
-    }
+    get uniforms() { return this.linked ||= this.finish(); }
 
     finish()
     {
