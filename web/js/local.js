@@ -2,7 +2,7 @@
 import {Device} from "./gl.js";
 import {clamp, distance} from "./math.js";
 import {Moving} from "./moving.js";
-import {rankPhotos} from "./photos.js";
+import {decodePicture, rankPhotos} from "./photos.js";
 import {Cloud} from "./points.js";
 import {LAYERS, Renderer, TONES} from "./renderer.js";
 import {text} from "./strings.js";
@@ -29,16 +29,10 @@ function totalBytes(manifest)
     return soft + photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, manifest.points.coarse.bytes);
 }
 
-async function decodeFile(files, {file})
-{
-    return createImageBitmap(new Blob([await files.get(file)]), {colorSpaceConversion: "none", premultiplyAlpha: "none"});
-}
+const decodeFile = async (files, {file}) => decodePicture(await files.get(file));
 
 // A photograph's picture and its depth.
-function decode(files, photo)
-{
-    return Promise.all([photo.picture, photo.depth].map(file => decodeFile(files, file)));
-}
+const decode = (files, photo) => Promise.all([photo.picture, photo.depth].map(file => decodeFile(files, file)));
 
 export class LocalPicture {
     // onChange: something has arrived that makes the picture better

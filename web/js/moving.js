@@ -1,8 +1,7 @@
 // What moves in a site: a hull and photographs for each time step. Files are loaded in the order in which
 // time shows them; what is decoded waits for the frame that shows it.
+import {decodePicture} from "./photos.js";
 import {Cloud} from "./points.js";
-
-const OPTIONS = {colorSpaceConversion: "none", premultiplyAlpha: "none"};
 
 export class Moving {
     // onChange(): another time step is ready.
@@ -58,9 +57,7 @@ export class Moving {
         this.decoding = true;
         try {
             await step.loaded;
-            const pictures = await Promise.all(step.pictures.map(
-                bytes => createImageBitmap(new Blob([bytes]), OPTIONS)));
-            this.ready = {number, pictures};
+            this.ready = {number, pictures: await Promise.all(step.pictures.map(decodePicture))};
         } finally {
             this.decoding = false;
         }
@@ -72,8 +69,7 @@ export class Moving {
         const {number, pictures} = this.ready, step = this.steps[number];
         this.ready = null;
         this.shown = number;
-        if (this.cloud)
-            this.cloud.release();
+        this.cloud?.release();
         this.cloud = new Cloud(this.device, step.hull);
         renderer.clouds = [renderer.clouds[0], this.cloud];
         this.photos.forEach((photo, i) => renderer.photos.replace(photo, step.photos[i], pictures[2 * i], pictures[2 * i + 1]));

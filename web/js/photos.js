@@ -8,6 +8,10 @@ export function makePhotos(manifest)
         ({...p, ...poseOf(p.cam_from_world), number, slot: -1, hasSoft: false, lastUse: 0}));
 }
 
+// The values of a file as they are, which may be depth.
+export const decodePicture = bytes =>
+    createImageBitmap(new Blob([bytes]), {colorSpaceConversion: "none", premultiplyAlpha: "none"});
+
 // --- choice, as src/render/photos/select.c makes it ---
 
 const ACROSS = 5, DEPTHS = [0.4, 1, 4], PER_SAMPLE = 8;
