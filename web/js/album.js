@@ -3,7 +3,7 @@
 import {Navigator} from "./navigation.js";
 import {nearestPhoto} from "./photos.js";
 import {text} from "./strings.js";
-import {button, byId, make, showHint, showProgress, Thumbs} from "./ui.js";
+import {button, byId, make, paragraphs, showHint, showProgress, Thumbs} from "./ui.js";
 import {viewFromSaved} from "./view.js";
 
 const STEPS = {Comma: -1, PageUp: -1, ArrowLeft: -1, Period: 1, PageDown: 1, ArrowRight: 1};
@@ -35,7 +35,7 @@ export class Album {
         panel.setAttribute("aria-label", text.notes.title);
         panel.append(...notes.flatMap((note, i) => [
             button(text.notes.mark(i + 1, note.title), () => this.show(this.photoOf(note))),
-            ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
+            ...paragraphs(note.text),
         ]));
         panel.hidden = notes.length === 0;
     }

@@ -3,7 +3,7 @@
 import {distance, dot} from "./math.js";
 import {MODES} from "./navigation.js";
 import {text} from "./strings.js";
-import {button, byId, make} from "./ui.js";
+import {button, byId, make, paragraphs} from "./ui.js";
 import {project, viewFromSaved, viewToSaved} from "./view.js";
 
 const READ_MS = 4000, MS_PER_LETTER = 55; // that a tour stays at an annotation
@@ -77,7 +77,7 @@ export class Notes {
             button(t.previous, () => turn(-1)), button(t.next, () => turn(1)),
             button(this.touring ? t.pause : t.play, () => this.toggleTour(i))];
         this.card.replaceChildren(make("h2", {textContent: note.title}),
-                                  ...(note.text || "").split("\n").map(line => make("p", {textContent: line})),
+                                  ...paragraphs(note.text),
                                   make("div", {className: "row"}, ...steps, close,
                                        make("span", {className: "small", textContent: t.ofAll(i + 1, all.length)})));
         this.reveal();
@@ -151,17 +151,11 @@ export class Notes {
     buildMaker()
     {
         const t = text.notes, maker = byId("maker"), s = this.settings;
-        const line = (label, key) => {
-            const input = make("input", {type: "text", maxLength: 200, value: s[key] || "",
-                                         onchange: () => this.change({[key]: input.value})});
-            return make("label", {className: "line"}, label, input);
-        };
+        const line = (label, key) => make("label", {className: "line"}, label, make("input", {
+            type: "text", maxLength: 200, value: s[key] || "", onchange: event => this.change({[key]: event.target.value})}));
         const modes = s.modes || MODES;
-        this.modeInputs = MODES.map(name => {
-            const input = make("input", {type: "checkbox", value: name, checked: modes.includes(name),
-                                         onchange: () => this.changeModes(input)});
-            return input;
-        });
+        this.modeInputs = MODES.map(name => make("input", {
+            type: "checkbox", value: name, checked: modes.includes(name), onchange: event => this.changeModes(event.target)}));
         this.list = make("ol");
         this.title = make("input", {type: "text", maxLength: 200});
         this.words = make("textarea", {rows: 3, maxLength: 2000});

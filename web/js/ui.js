@@ -19,6 +19,9 @@ export function make(tag, {label, role, ...properties} = {}, ...children)
 export const button = (textContent, onclick, more = {}) =>
     make("button", {type: "button", textContent, onclick, ...more});
 
+// words: may be undefined
+export const paragraphs = words => (words || "").split("\n").map(line => make("p", {textContent: line}));
+
 // Offers a Blob, or a value as JSON, as a file to keep.
 export function save(name, what)
 {
