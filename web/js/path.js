@@ -1,5 +1,6 @@
 // A path of the camera through keyframes: recorded, edited, played.
 import {durationOf, secondsFrom, viewAt} from "./keyframes.js";
+import {clamp} from "./math.js";
 import {nerfstudioPath, orielPath, readPath} from "./path_files.js";
 import {text} from "./strings.js";
 import {byId, button, make, save} from "./ui.js";
@@ -131,17 +132,15 @@ export class PathEditor {
     row(key, i)
     {
         const t = text.path, last = i === this.keys.length - 1;
-        const number = (label, more, edit) => {
-            const onchange = () => this.change(keys => keys[i] = edit(Number(input.value)));
-            const input = make("input", {type: "number", label, title: label, ...more, onchange});
-            return input;
-        };
+        const number = (label, more, edit) => make("input", {
+            type: "number", label, title: label, ...more,
+            onchange: event => this.change(keys => keys[i] = edit(Number(event.target.value)))});
         const degrees = {min: 5, max: 150, step: 1, value: viewToKey(key).fov_y_deg.toFixed(0)};
         const fov = number(t.fov(i + 1), degrees, value =>
             ({...(viewFromKey({...viewToKey(key), fov_y_deg: value}, key.frame) || key), seconds: key.seconds}));
         const times = {min: 0.1, max: 3600, step: 0.1, value: Number(secondsFrom(key).toFixed(2))};
         const seconds = number(t.speed(i + 1), {...times, className: "seconds", disabled: last}, value =>
-            ({...key, seconds: Math.min(Math.max(value || 0, 0.1), 3600)}));
+            ({...key, seconds: clamp(value || 0, 0.1, 3600)}));
         const small = (sign, label, run, disabled = false) => button(sign, run, {label, title: label, disabled});
         const swap = by => () => this.change(keys => [keys[i], keys[i + by]] = [keys[i + by], keys[i]]);
         return make("li", {className: "row"},
@@ -187,16 +186,15 @@ export class PathEditor {
         this.playing.textContent = text.path.pause;
         const start = performance.now(), ms = 1000 * this.duration, from = Number(this.scrubber.value), turn = this.turn = (this.turn || 0) + 1;
         const step = now => {
-            const share = Math.min(Math.max((now - start) / ms + (from < 1 ? from : 0), 0), 1);
+            const share = clamp((now - start) / ms + (from < 1 ? from : 0), 0, 1);
             if (turn !== this.turn)
                 return;
-            if (this.keys.length < 2 || this.navigator.flying) {
-                this.stopPlaying();
-                return;
+            const goes = this.keys.length > 1 && !this.navigator.flying;
+            if (goes) {
+                this.scrubber.value = share;
+                this.show(share);
             }
-            this.scrubber.value = share;
-            this.show(share);
-            if (share < 1)
+            if (goes && share < 1)
                 requestAnimationFrame(step);
             else
                 this.stopPlaying();
