@@ -39,11 +39,8 @@ export class Map2d {
         };
         const [x0, x1] = range(0), [y0, y1] = range(1);
         const side = Math.max(x1 - x0, y1 - y0, 1e-9) * (1 + 2 * MARGIN);
-        this.left = (x0 + x1 - side) / 2;
-        this.top = (y0 + y1 - side) / 2;
-        this.side = side;
+        Object.assign(this, {side, left: (x0 + x1 - side) / 2, top: (y0 + y1 - side) / 2});
         this.points = points.sort((a, b) => a[2] - b[2]); // higher ones last, on top
-        this.background = null;
     }
 
     onMap([x, y], size) { return [(x - this.left) / this.side * size, (y - this.top) / this.side * size]; }

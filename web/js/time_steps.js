@@ -19,9 +19,7 @@ export class TimeSteps {
             this.speed = Number(speed.value);
             this.restart();
         }}, ...SPEEDS.map(value => make("option", {value, textContent: `${value}\u00d7`, selected: value === 1})));
-        const loop = make("input", {type: "checkbox", checked: true, onchange: () => {
-            this.loops = loop.checked;
-        }});
+        const loop = make("input", {type: "checkbox", checked: true, onchange: () => this.loops = loop.checked});
         bar.append(this.button, button("\u2039", () => this.show(this.timeStep - 1), {title: t.back}),
                    button("\u203a", () => this.show(this.timeStep + 1), {title: t.forth}), this.slider,
                    this.place, speed, make("label", {}, loop, t.loop));
@@ -62,11 +60,9 @@ export class TimeSteps {
         this.place.textContent = text.timeSteps.place(this.timeStep + 1, this.count);
     }
 
-    // Lets time run to now. Time steps that a slow picture has no time for are left out.
+    // While it plays: lets time run to now. Time steps that a slow picture has no time for are left out.
     advance()
     {
-        if (!this.playing)
-            return;
         const at = this.from + Math.floor((performance.now() - this.since) / 1000 * RATE * this.speed);
         this.timeStep = this.loops ? at % this.count : Math.min(at, this.count - 1);
         this.playing = this.loops || this.timeStep < this.count - 1;
