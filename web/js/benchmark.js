@@ -1,5 +1,6 @@
 // Ten seconds past all photographs, and how long frames took.
 import {viewAt} from "./keyframes.js";
+import {clamp} from "./math.js";
 import {photoView} from "./view.js";
 
 const SECONDS = 10;
@@ -22,7 +23,7 @@ export async function benchmark(walk, seconds = SECONDS)
         const step = now => {
             began = began || now;
             last = last || now;
-            const passed = Math.min(Math.max((now - began) / (1000 * seconds), 0), 1);
+            const passed = clamp((now - began) / (1000 * seconds), 0, 1);
             navigator.setView(keys.length > 1 ? viewAt(keys, passed) : keys[0]);
             walk.wake();
             if (passed < 1)

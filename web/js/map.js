@@ -1,8 +1,9 @@
 // The scene from above: points, the photographs' places and directions in the order they were
 // taken, and the viewer.
-import {add, cross, dot, normalize, rotateBack, scale, sub} from "./math.js";
+import {across, add, cross, dot, normalize, rotateBack, scale} from "./math.js";
 import {byId, make} from "./ui.js";
 import {text} from "./strings.js";
+import {forwardOf} from "./view.js";
 
 const MARGIN = 0.06;       // of the map's side
 const AROUND = 1.2;        // of the scene's distance: what of the points around photographs shows
@@ -16,10 +17,9 @@ export class Map2d {
         this.canvas.setAttribute("aria-label", text.map);
         this.canvas.title = text.map;
         Object.assign(this, {navigator, picture, goTo});
-        const up = navigator.up, forward = navigator.home.r.slice(6);
         // The start looks upwards on the map.
-        this.north = normalize(sub(forward, scale(up, dot(forward, up))));
-        this.east = cross(this.north, up);
+        this.north = normalize(across(forwardOf(navigator.home), navigator.up));
+        this.east = cross(this.north, navigator.up);
         this.points = null; // laid out when the map is first shown
         this.canvas.addEventListener("click", event => this.click(event));
     }

@@ -16,18 +16,15 @@ export function normalize(a)
     return l > 0 ? scale(a, 1 / l) : a;
 }
 
+// The part of `a` across a unit vector.
+export const across = (a, up) => sub(a, scale(up, dot(a, up)));
+
 export const row = (r, i) => [r[3 * i], r[3 * i + 1], r[3 * i + 2]];
 export const rotate = (r, v) => [dot(row(r, 0), v), dot(row(r, 1), v), dot(row(r, 2), v)];
 export const rotateBack = (r, v) => [0, 1, 2].map(k => r[k] * v[0] + r[3 + k] * v[1] + r[6 + k] * v[2]);
 
-export function multiply(a, b)
-{
-    const out = [];
-    for (let i = 0; i < 3; i++)
-        for (let j = 0; j < 3; j++)
-            out.push(a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j]);
-    return out;
-}
+// Each row of the product is b's transpose applied to a row of a.
+export const multiply = (a, b) => [0, 1, 2].flatMap(i => rotateBack(b, row(a, i)));
 
 // Rotation by an angle about a unit axis.
 export function rotation(axis, angle)

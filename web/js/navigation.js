@@ -1,5 +1,5 @@
 // Where the viewer is and how they get on: walk, fly, orbit, and flights from place to place.
-import {add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
+import {across, add, clamp, distance, dot, length, mix, multiply, normalize, rotate, rotateBack, rotation,
         scale, sub} from "./math.js";
 import {nearestPhoto} from "./photos.js";
 import {forwardOf, levelAxes, mixViews, photoView, rightOf, upOf, viewFromSaved} from "./view.js";
@@ -134,8 +134,7 @@ export class Navigator {
     // Distance along the ground to the nearest photograph.
     apart(eye)
     {
-        const level = v => sub(v, scale(this.up, dot(v, this.up)));
-        return Math.min(...this.photos.map(p => length(level(sub(eye, p.eye)))));
+        return Math.min(...this.photos.map(p => length(across(sub(eye, p.eye), this.up))));
     }
 
     // Of the room around photographs: 0 among them, 1 at its border.
@@ -226,10 +225,9 @@ export class Navigator {
     // To a point that is seen: onto the ground, or near anything else.
     approach(point)
     {
-        const {view, up, ground} = this, walks = this.mode === "walk";
-        const level = v => walks ? sub(v, scale(up, dot(v, up))) : v; // walkers keep the eye's height
+        const {view, up, ground} = this, walks = this.mode === "walk", to = sub(point, view.eye);
         const underfoot = walks && ground && dot(point, up) + ground.plane[3] < UNDERFOOT * ground.height;
-        let way = scale(level(sub(point, view.eye)), underfoot ? 1 : 1 - NEAR);
+        let way = scale(walks ? across(to, up) : to, underfoot ? 1 : 1 - NEAR); // walkers keep the eye's height
         for (let i = 0; i < 20 && walks && this.apart(add(view.eye, way)) > this.room; i++)
             way = scale(way, 0.8);
         this.flyTo({...view, eye: add(view.eye, way)});

@@ -1,8 +1,8 @@
 // Views: where the viewer is, where they look, and what part of it the window frames.
 // A frame is a picture of height 1: focal lengths and the principal point's offset from the
 // middle in that unit, so that a photograph's own framing survives any window.
-import {add, dot, length, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row, scale,
-        slerp, sub} from "./math.js";
+import {across, add, dot, length, mix, mix3, normalize, quatFromRotation, rotate, rotateBack, rotationFromQuat, row,
+        scale, slerp, sub} from "./math.js";
 
 // Quarters, clockwise, that turn a picture of each EXIF orientation upright (orl_photo_upright).
 const QUARTERS = [0, 0, 0, 2, 2, 1, 1, 3, 3];
@@ -49,11 +49,11 @@ export const upOf = view => scale(row(view.r, 1), -1);
 // Right, up and ahead of a view that looks straight ahead there.
 export function levelAxes(view, up)
 {
-    const level = v => sub(v, scale(up, dot(v, up))), forward = forwardOf(view);
-    let ahead = level(forward);
+    const forward = forwardOf(view);
+    let ahead = across(forward, up);
     if (length(ahead) < 0.2) // looking straight down or up
-        ahead = level(scale(upOf(view), dot(forward, up) < 0 ? 1 : -1));
-    return [normalize(level(rightOf(view))), up, normalize(ahead)];
+        ahead = across(scale(upOf(view), dot(forward, up) < 0 ? 1 : -1), up);
+    return [normalize(across(rightOf(view), up)), up, normalize(ahead)];
 }
 
 export function mixViews(a, b, t)
