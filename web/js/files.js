@@ -33,12 +33,6 @@ async function load(url)
     }
 }
 
-function embeddedFiles()
-{
-    const element = document.getElementById("files");
-    return element ? JSON.parse(element.textContent) : null;
-}
-
 function decodeBase64(string)
 {
     const binary = atob(string), bytes = new Uint8Array(binary.length);
@@ -51,8 +45,9 @@ export class Files {
     // folder: that paths are relative to, as the page's own address has it; "" or ending with a slash
     constructor(onError, folder = "")
     {
+        const embedded = document.getElementById("files");
         this.folder = folder;
-        this.embedded = embeddedFiles();
+        this.embedded = embedded && JSON.parse(embedded.textContent);
         this.onError = onError;
         this.bytes = 0;      // loaded so far
         this.waiting = [];   // {priority(), job()}

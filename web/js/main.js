@@ -51,6 +51,7 @@ class Walk {
         });
         this.running = false;
         this.headset = null;
+        this.onFrame = null; // told that a frame has been drawn, or has come
         this.ev = 0; // exposure, stops
         this.asked = Object.fromEntries(new URLSearchParams(location.search)); // by whoever made the link
     }
@@ -64,7 +65,6 @@ class Walk {
         this.timeSteps = this.manifest.time_steps > 1 && !this.manifest.follows && (picture.remote || picture.moving)
             ? new TimeSteps(this.manifest.time_steps, byId("time-steps"), () => this.change(() => {})) : null;
         picture.timeSteps = this.timeSteps;
-        this.follows = Boolean(this.manifest.follows); // what there is to see changes by itself
         this.buildTools();
         this.readAddress();
         this.resized();
@@ -127,7 +127,7 @@ class Walk {
         const kind = manifest.live ? LivePicture : LocalPicture;
         let picture = null;
         picture = await kind.open(canvas, files, manifest, photos, took => {
-            if (picture && walk.picture === picture)
+            if (walk.picture === picture)
                 walk.changed(took);
         });
         return picture;
@@ -137,10 +137,9 @@ class Walk {
     changed(took)
     {
         if (took !== undefined) {
-            if (this.timeSteps)
-                this.timeSteps.measured(took);
+            this.timeSteps?.measured(took);
             this.adapt(took, 0);
-            this.showFrame();
+            this.onFrame?.();
         } else {
             this.refined = false;
             this.restSince = performance.now(); // more may be coming
@@ -428,8 +427,7 @@ class Walk {
     {
         const canvas = await this.picture.capture(this.windowCamera(1), this.layer);
         canvas.toBlob(blob => save(`${this.manifest.title}.png`, blob));
-        this.refined = false;
-        this.wake();
+        this.change(() => {});
     }
 
     // --- the address ---
@@ -496,7 +494,7 @@ class Walk {
 
     tick(time)
     {
-        if (this.headset && this.headset.on) {
+        if (this.headset?.on) {
             this.running = false;
             return;
         }
@@ -509,20 +507,22 @@ class Walk {
             this.running = false;
             return;
         }
-        const plays = this.timeSteps !== null && this.timeSteps.playing;
+        const plays = this.timeSteps?.playing;
         if (plays)
             this.timeSteps.advance();
-        const changed = nav.changed || plays || this.follows;
+        const changed = nav.changed || plays || this.manifest.follows; // what is seen changes by itself
         nav.changed = false;
         if (changed || moves)
             this.restSince = time;
         const rests = time - this.restSince > this.refineAfter && !this.input.dragging;
-        if (changed || (this.dirty && !rests))
+        if (changed || (this.dirty && !rests)) {
             this.drawFrame(rests ? 0 : this.scale, passed);
-        else if (rests && !this.refined)
-            this.refine();
-        else if (this.dirty)
+        } else if (rests && !this.refined) {
+            this.finest = 0;
+            this.drawFrame(0, 0);
+        } else if (this.dirty) {
             this.showState();
+        }
         this.dirty = false;
         if (rests && this.refined) {
             this.writeAddress();
@@ -546,12 +546,6 @@ class Walk {
     // A sharp frame holds up what is loading. It waits as long as it takes for more to come.
     get refineAfter() { return Math.max(REFINE_AFTER, this.picture.complete ? 0 : this.sharpMs); }
 
-    refine()
-    {
-        this.finest = 0;
-        this.drawFrame(0, 0);
-    }
-
     drawFrame(scale, passed)
     {
         const full = this.windowCamera(1), started = performance.now();
@@ -561,29 +555,19 @@ class Walk {
         this.refined = scale === 0;
         if (!this.picture.remote) { // else frames tell when they come
             this.adapt(passed, performance.now() - started);
-            this.showFrame();
+            this.onFrame?.();
         }
         this.showState();
-    }
-
-    // A frame has been drawn, or has come.
-    showFrame()
-    {
-        if (this.onFrame)
-            this.onFrame();
     }
 
     // While moving, frames follow one another as fast as they are drawn.
     adapt(passed, own)
     {
-        if (passed > 0 && passed < 2000) {
-            this.frames.push(Math.max(passed, own));
-            this.frames = this.frames.slice(-8);
-        }
+        if (passed > 0 && passed < 2000)
+            this.frames = [...this.frames, Math.max(passed, own)].slice(-8);
         if (this.frames.length < 4)
             return;
-        const mean = this.frames.reduce((a, b) => a + b) / this.frames.length;
-        this.frameMs = mean;
+        const mean = this.frameMs = this.frames.reduce((a, b) => a + b) / this.frames.length;
         const [long, short] = this.picture.remote ? [LIVE_LONG, LIVE_SHORT] : [FRAME_LONG, FRAME_SHORT];
         const step = mean > long ? 1 : mean < short ? -1 : 0;
         const next = clamp(this.scale + step, Math.min(this.finest, this.scale), SCALES.length - 1);
@@ -618,10 +602,9 @@ class Walk {
             poster.add("away");
             requestAnimationFrame(() => this.scale = this.firstScale()); // once this frame is seen
         }
-        if (byId("panel").hidden)
-            return;
-        this.panel.show({frame: this.frameMs ? text.milliseconds(this.frameMs) : "–",
-                         ...this.picture.figures()}, this.picture.details);
+        if (!byId("panel").hidden)
+            this.panel.show({frame: this.frameMs ? text.milliseconds(this.frameMs) : "–",
+                             ...this.picture.figures()}, this.picture.details);
     }
 
     // The poster is the start view: it stays until the picture is as good, or the viewer moves on.
@@ -661,9 +644,8 @@ async function start()
         console.error(error);
         fail(error);
     });
-    const poster = byId("poster");
     if (files.embedded)
-        poster.src = await files.address("poster.jpg");
+        byId("poster").src = await files.address("poster.jpg");
     const manifest = await files.json("manifest.json");
     const photos = makePhotos(manifest), walk = new Walk(files, manifest, photos);
     try {
