@@ -49,9 +49,8 @@ export class MethodPanel {
         this.select.value = choice.name;
         this.about.textContent = this.methods.list.find(m => m.name === choice.name).description;
         this.rows.replaceChildren(...Object.entries(choice.values).map(([k, value]) => this.row(this.options.get(k), value)));
-        const again = key && this.rows.querySelector(`[data-key="${key}"]`);
-        if (again)
-            again.focus();
+        if (key)
+            this.rows.querySelector(`[data-key="${key}"]`)?.focus();
     }
 
     row(option, value)

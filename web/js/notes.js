@@ -4,13 +4,13 @@ import {distance, dot} from "./math.js";
 import {MODES} from "./navigation.js";
 import {text} from "./strings.js";
 import {button, byId, make, paragraphs} from "./ui.js";
-import {project, viewFromSaved, viewToSaved} from "./view.js";
+import {forwardOf, project, viewFromSaved, viewToSaved} from "./view.js";
 
 const READ_MS = 4000, MS_PER_LETTER = 55; // that a tour stays at an annotation
 const NEAR = 0.05, NEAR_COSINE = 0.97;    // of the scene's distance, and of directions: where a path passes
 
 const isNear = (a, b, most) => a !== null && distance(a.eye, b.eye) < most &&
-                               dot(a.r.slice(6), b.r.slice(6)) > NEAR_COSINE;
+                               dot(forwardOf(a), forwardOf(b)) > NEAR_COSINE;
 
 export class Notes {
     // seen(point): false where a surface is before it; settings: manifest.walk;
