@@ -111,15 +111,13 @@ export class PhotoStore {
 
     freeSlot()
     {
-        const ready = this.ready;
+        const {ready} = this;
         if (ready.length < this.slots) {
             const taken = new Set(ready.map(p => p.slot));
             return [...Array(this.slots).keys()].find(slot => !taken.has(slot));
         }
-        const oldest = ready.reduce((a, b) => b.lastUse < a.lastUse ? b : a);
-        const slot = oldest.slot;
-        oldest.slot = -1;
-        oldest.dropped = true;
+        const oldest = ready.reduce((a, b) => b.lastUse < a.lastUse ? b : a), {slot} = oldest;
+        Object.assign(oldest, {slot: -1, dropped: true});
         return slot;
     }
 
