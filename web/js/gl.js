@@ -103,7 +103,7 @@ export class Device {
         gl.texParameteri(kind, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         const bytes = FORMATS[format][2] * width * height * Math.max(layers, 1) * (levels > 1 ? 4 / 3 : 1);
         this.bytes += bytes;
-        return {id, kind, format, width, height, levels, layers, bytes};
+        return {id, kind, format, width, height, bytes};
     }
 
     write(texture, data)

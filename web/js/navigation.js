@@ -30,7 +30,7 @@ export class Navigator {
     {
         const {ground, distance: typical} = manifest;
         Object.assign(this, {photos, ground, calm, pivotAt, distance: typical, up: normalize(manifest.up)});
-        const first = photoView(photos[manifest.start]), settings = manifest.walk || {};
+        const first = photoView(photos[manifest.start]), settings = manifest.walk;
         const start = settings.start ? viewFromSaved(settings.start, first) : null;
         this.home = start || first;
         this.homePhoto = start ? null : photos[manifest.start];

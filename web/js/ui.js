@@ -52,7 +52,6 @@ export class Tools {
         const bar = byId("tools");
         bar.setAttribute("aria-label", text.toolbar);
         this.toggles = [];
-        this.count = 0;
         for (const [id, action] of Object.entries(actions))
             this.add(id, action);
     }
@@ -63,7 +62,6 @@ export class Tools {
         const more = {type: "button", title: label, label, id: `tool-${id}`, onclick: action.run};
         const button = make("button", more, icon(id));
         byId("tools").append(button);
-        this.count++;
         if (action.pressed)
             this.toggles.push([button, action.pressed]);
     }
@@ -71,9 +69,10 @@ export class Tools {
     // In rows of equal length, as few as the window has room for.
     fit()
     {
-        const room = window.innerWidth - 30, rows = Math.ceil(this.count * BUTTON_MIN / room);
-        const wide = rows === 1 && this.count * BUTTON_MAX > room ? 2 : rows;
-        byId("tools").style.gridTemplateColumns = `repeat(${Math.ceil(this.count / wide)}, minmax(0, ${BUTTON_MAX}px))`;
+        const bar = byId("tools"), count = bar.childElementCount;
+        const room = window.innerWidth - 30, rows = Math.ceil(count * BUTTON_MIN / room);
+        const wide = rows === 1 && count * BUTTON_MAX > room ? 2 : rows;
+        bar.style.gridTemplateColumns = `repeat(${Math.ceil(count / wide)}, minmax(0, ${BUTTON_MAX}px))`;
     }
 
     update()
