@@ -16,6 +16,9 @@ const FORMATS = {
     RGBA16F: ["RGBA", "HALF_FLOAT", 8], RGBA32F: ["RGBA", "FLOAT", 16],
     R32UI: ["RED_INTEGER", "UNSIGNED_INT", 4], RG32UI: ["RG_INTEGER", "UNSIGNED_INT", 8],
 };
+// How uniforms are set that are neither samplers nor matrices.
+const SETTERS = {FLOAT: "uniform1f", INT: "uniform1i", BOOL: "uniform1i",
+                 FLOAT_VEC2: "uniform2fv", FLOAT_VEC3: "uniform3fv", FLOAT_VEC4: "uniform4fv"};
 const FILTERED = new Set(["R16F", "RGBA8", "SRGB8_ALPHA8", "RGBA16F"]);
 
 // Why this browser draws no walk.
@@ -223,7 +226,8 @@ class Program {
             const {name: key, type} = gl.getActiveUniform(id, i);
             const samples = type === gl.SAMPLER_2D || type === gl.SAMPLER_2D_ARRAY ||
                             type === gl.UNSIGNED_INT_SAMPLER_2D;
-            uniforms.set(key, {type, place: gl.getUniformLocation(id, key), unit: samples ? unit++ : -1});
+            const setter = SETTERS[Object.keys(SETTERS).find(kind => gl[kind] === type)];
+            uniforms.set(key, {type, setter, place: gl.getUniformLocation(id, key), unit: samples ? unit++ : -1});
         }
         return uniforms;
     }
@@ -241,25 +245,17 @@ class Program {
         }
     }
 
-    set({type, place, unit}, value)
+    set({type, setter, place, unit}, value)
     {
         const gl = this.gl;
         if (unit >= 0) {
             gl.activeTexture(gl.TEXTURE0 + unit);
             gl.bindTexture(value.kind, value.id);
             gl.uniform1i(place, unit);
-        } else if (type === gl.FLOAT) {
-            gl.uniform1f(place, value);
-        } else if (type === gl.INT || type === gl.BOOL) {
-            gl.uniform1i(place, value);
-        } else if (type === gl.FLOAT_VEC2) {
-            gl.uniform2fv(place, value);
-        } else if (type === gl.FLOAT_VEC3) {
-            gl.uniform3fv(place, value);
-        } else if (type === gl.FLOAT_VEC4) {
-            gl.uniform4fv(place, value);
         } else if (type === gl.FLOAT_MAT3) {
             gl.uniformMatrix3fv(place, true, value); // rows
+        } else if (setter) {
+            gl[setter](place, value);
         } else {
             throw new Error(`${this.name}: a uniform of an unknown type`);
         }
