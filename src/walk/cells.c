@@ -89,20 +89,20 @@ static void describe_cell(struct cell *cell, size_t count)
 {
     const struct orl_points *points = cell->points;
     struct cell_words *w = &cell->words;
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     float least = INFINITY, most = 0;
-    for (int k = 0; k < 3; k++) {
-        float low = INFINITY, high = -INFINITY;
-        for (size_t i = 0; i < count; i++) {
-            float p = points->position[cell->index[i]][k];
-            low = fminf(low, p);
-            high = fmaxf(high, p);
-        }
-        w->low[k] = low;
-        w->size[k] = fmaxf(high - low, 1e-12f);
-    }
     for (size_t i = 0; i < count; i++) {
-        least = fminf(least, points->radius[cell->index[i]]);
-        most = fmaxf(most, points->radius[cell->index[i]]);
+        size_t point = cell->index[i];
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], points->position[point][k]);
+            high[k] = fmaxf(high[k], points->position[point][k]);
+        }
+        least = fminf(least, points->radius[point]);
+        most = fmaxf(most, points->radius[point]);
+    }
+    for (int k = 0; k < 3; k++) {
+        w->low[k] = low[k];
+        w->size[k] = fmaxf(high[k] - low[k], 1e-12f);
     }
     w->radius_low = least * cell->enlarged;
     w->radius_octaves = log2f(most / least);
@@ -134,15 +134,12 @@ static void encode_point(const struct cell *cell, size_t i, uint8_t out[POINT_BY
 
 static json_t *box_json(const struct cell_words *words, size_t count)
 {
-    float low[3], high[3];
-    for (int k = 0; k < 3; k++) {
-        low[k] = words[0].low[k];
-        high[k] = words[0].low[k] + words[0].size[k];
-        for (size_t c = 1; c < count; c++) {
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t c = 0; c < count; c++)
+        for (int k = 0; k < 3; k++) {
             low[k] = fminf(low[k], words[c].low[k]);
             high[k] = fmaxf(high[k], words[c].low[k] + words[c].size[k]);
         }
-    }
     return json_pack("[f,f,f,f,f,f]", (double)low[0], (double)low[1], (double)low[2],
                      (double)high[0], (double)high[1], (double)high[2]);
 }
@@ -174,13 +171,10 @@ static void encode_cells(struct writing *w, size_t first, size_t count, uint8_t 
         cell.words.coarse = (uint32_t)coarse;
         cell.words.file = (uint32_t)(c / CELLS_PER_FILE);
         cell.words.first = (uint32_t)*rest_points;
-        for (size_t i = 0; i < kept; i++) {
-            uint8_t *to = i < coarse ? w->coarse_data + w->coarse_size
-                                     : rest + *rest_points * POINT_BYTES;
-            encode_point(&cell, i, to);
-            w->coarse_size += i < coarse ? POINT_BYTES : 0;
-            *rest_points += i < coarse ? 0 : 1;
-        }
+        for (size_t i = 0; i < coarse; i++, w->coarse_size += POINT_BYTES)
+            encode_point(&cell, i, w->coarse_data + w->coarse_size);
+        for (size_t i = coarse; i < kept; i++, ++*rest_points)
+            encode_point(&cell, i, rest + *rest_points * POINT_BYTES);
         w->words[c] = cell.words;
         w->site->report->points += kept;
     }
