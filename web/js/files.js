@@ -41,6 +41,9 @@ function decodeBase64(string)
     return bytes.buffer;
 }
 
+// files: of the manifest
+export const bytesOf = files => files.reduce((sum, file) => sum + file.bytes, 0);
+
 export class Files {
     // folder: that paths are relative to, as the page's own address has it; "" or ending with a slash
     constructor(onError, folder = "")

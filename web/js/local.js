@@ -1,8 +1,9 @@
 // The picture as this browser draws it: points and photographs on its own graphics chip.
+import {bytesOf} from "./files.js";
 import {Device} from "./gl.js";
 import {clamp, distance} from "./math.js";
 import {Moving} from "./moving.js";
-import {decodePicture, rankPhotos} from "./photos.js";
+import {decodePicture, filesOf, rankPhotos} from "./photos.js";
 import {Cloud} from "./points.js";
 import {LAYERS, Renderer, TONES} from "./renderer.js";
 import {text} from "./strings.js";
@@ -22,17 +23,13 @@ function photoBudget()
     return (gigabytes >= 8 ? 768 : gigabytes >= 4 ? 384 : 160) * 2 ** 20;
 }
 
-function totalBytes(manifest)
-{
-    const soft = manifest.soft ? manifest.photos.reduce((sum, p) => sum + p.soft.bytes, manifest.soft.bytes) : 0;
-    const photos = manifest.photos.reduce((sum, p) => sum + p.picture.bytes + p.depth.bytes, 0);
-    return soft + photos + manifest.points.files.reduce((sum, f) => sum + f.bytes, manifest.points.coarse.bytes);
-}
+// Without thumbnails.
+const totalBytes = ({photos, points, soft}) => bytesOf([points.coarse, ...points.files, ...photos.flatMap(filesOf),
+                                                        ...(soft ? [soft, ...photos.map(photo => photo.soft)] : [])]);
 
 const decodeFile = async (files, {file}) => decodePicture(await files.get(file));
 
-// A photograph's picture and its depth.
-const decode = (files, photo) => Promise.all([photo.picture, photo.depth].map(file => decodeFile(files, file)));
+const decode = (files, photo) => Promise.all(filesOf(photo).map(file => decodeFile(files, file)));
 
 export class LocalPicture {
     // onChange: something has arrived that makes the picture better

@@ -1,6 +1,7 @@
 // What moves in a site: a hull and photographs for each time step. Files are loaded in the order in which
 // time shows them; what is decoded waits for the frame that shows it.
-import {decodePicture} from "./photos.js";
+import {bytesOf} from "./files.js";
+import {decodePicture, filesOf} from "./photos.js";
 import {Cloud} from "./points.js";
 
 export class Moving {
@@ -8,7 +9,8 @@ export class Moving {
     constructor(device, files, manifest, photos, onChange)
     {
         Object.assign(this, {device, files, photos, onChange, wanted: 0, shown: -1, ready: null, decoding: false});
-        this.steps = manifest.steps.map(step => ({photos: manifest.photos, ...step}));
+        this.steps = manifest.steps.map(({points, photos = manifest.photos}) =>
+            ({photos, files: [points, ...photos.flatMap(filesOf)]}));
         this.cloud = null;
         this.steps.forEach((step, number) => {
             step.loaded = new Promise((done, failed) => files.schedule(
@@ -23,19 +25,12 @@ export class Moving {
 
     async load(step)
     {
-        const get = file => this.files.get(file.file);
-        [step.hull, ...step.pictures] = await Promise.all([get(step.points), ...step.photos.flatMap(
-            photo => [get(photo.picture), get(photo.depth)])]);
-        step.here = true;
+        [step.hull, ...step.pictures] = await Promise.all(step.files.map(file => this.files.get(file.file)));
     }
 
     get complete() { return this.shown === this.wanted; }
 
-    get bytes()
-    {
-        const of = photo => photo.picture.bytes + photo.depth.bytes;
-        return this.steps.reduce((sum, {points, photos}) => photos.reduce((s, p) => s + of(p), sum + points.bytes), 0);
-    }
+    get bytes() { return bytesOf(this.steps.flatMap(step => step.files)); }
 
     // Begins what a frame at time step `now` needs, before which `next` will be shown. What was made in the
     // meantime is put into the renderer, late or not: time leaves out what there was no time for.

@@ -8,6 +8,9 @@ export function makePhotos(manifest)
         ({...p, ...poseOf(p.cam_from_world), number, slot: -1, hasSoft: false, lastUse: 0}));
 }
 
+// Of a published photograph.
+export const filesOf = photo => [photo.picture, photo.depth];
+
 // The values of a file as they are, which may be depth.
 export const decodePicture = bytes =>
     createImageBitmap(new Blob([bytes]), {colorSpaceConversion: "none", premultiplyAlpha: "none"});
