@@ -152,10 +152,12 @@ export class Notes {
     {
         const t = text.notes, maker = byId("maker"), s = this.settings;
         const line = (label, key) => make("label", {className: "line"}, label, make("input", {
-            type: "text", maxLength: 200, value: s[key] || "", onchange: event => this.change({[key]: event.target.value})}));
+            type: "text", maxLength: 200, value: s[key] || "",
+            onchange: event => this.change({[key]: event.target.value})}));
         const modes = s.modes || MODES;
         this.modeInputs = MODES.map(name => make("input", {
-            type: "checkbox", value: name, checked: modes.includes(name), onchange: event => this.changeModes(event.target)}));
+            type: "checkbox", value: name, checked: modes.includes(name),
+            onchange: event => this.changeModes(event.target)}));
         this.list = make("ol");
         this.title = make("input", {type: "text", maxLength: 200});
         this.words = make("textarea", {rows: 3, maxLength: 2000});
