@@ -134,7 +134,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         "triangles", true, is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 4, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
                           "photographs", true, NULL},
-    [ORL_STAGE_TUNE] = {"tune", 1, ORL_STAGE_EXPOSE, NULL, orl_stage_tune, {0}, "tuned", true,
+    [ORL_STAGE_TUNE] = {"tune", 2, ORL_STAGE_EXPOSE, NULL, orl_stage_tune, {0}, "tuned", true,
                         NULL},
     [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_TUNE, occluders_settings,
                              orl_stage_occluders, {"occluders"}, "occluded", true,

@@ -13,8 +13,8 @@ enum {
     SIDE = 256,    // their longer side, pixels, at most
 };
 static const double GAIN_DB = 0.1; // a change must bring so much
-// What is best differs most from scene to scene for these; oriel tune moves others as well.
-static char *const KEYS[] = {"sharpness", "depth_tolerance"};
+// What is best differs most from scene to scene for this one; oriel tune moves others as well.
+static char *const KEYS[] = {"sharpness"};
 
 static int size_divide(const struct orl_scene *scene)
 {

@@ -91,7 +91,7 @@ if command -v colmap >/dev/null; then
     grep -q 'visual hull of 15 silhouettes (masks) closes surfaces by [1-9]' stderr.txt ||
         fail "silhouettes close nothing"
     # What suits it is what oriel tune finds.
-    runs 0 "$oriel" tune closed --fresh --only sharpness,depth_tolerance --views 8 --size-divide 2 \
+    runs 0 "$oriel" tune closed --fresh --only sharpness --views 8 --size-divide 2 \
         --gain 0.1 --json tuned.json
     settled() { sed -n '/"settings"/,/"photographs"/p' | tr -d ' \n' | sed 's/.*"settings"/"settings"/'; }
     [ "$(sed -n '/"tuned"/,$p' closed/scene.json | settled)" = "$(settled <tuned.json)" ] ||
