@@ -128,7 +128,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true, NULL},
     [ORL_STAGE_RADII] = {"radii", 4, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
                          {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
-    [ORL_STAGE_GROUND] = {"ground", 3, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
+    [ORL_STAGE_GROUND] = {"ground", 4, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
                           "ground", true, NULL},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, test_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, is_mesh_wanted},

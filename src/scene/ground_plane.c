@@ -10,7 +10,6 @@
 enum {
     POINTS_MAX = 4096,
     PHOTOS_MAX = 64,
-    PAIRS = 5, // partners that each point is tried with
 };
 
 // Largest standard deviation of the photographs' heights, as a fraction of their mean height.
@@ -23,11 +22,10 @@ static const double UPWARD_MIN = 0.85;
 // Least cosine between the plane's normal and what the photographs have above: a ceiling is no ground.
 static const double UP_MIN = -0.5;
 // As fractions of all points.
-static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.02;
-// Smallest cosine of a point's normal with the plane's for the two to agree, and the weights of
-// such inliers and of points beneath.
+static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.01;
+// Smallest cosine of a point's normal with the plane's for the point to lie in it. The feet of facades lie near a
+// plane, and so do the lower edges of a thing on a turntable.
 static const double ALIGNED_COSINE = 0.7;
-static const int ALIGNED_COUNTS = 3, BENEATH_COUNTS = 3;
 
 struct sample {
     double (*position)[3], (*normal)[3];
@@ -36,37 +34,13 @@ struct sample {
     double centres[PHOTOS_MAX][3];
     int photo_count;
     double tolerance; // scene units
-    double along[3]; // unit vector along the largest spread of the camera centres
-    double up[3];    // mean of the photographs, of those on their side no more than a guess
+    double up[3];     // mean of the photographs, of those on their side no more than a guess
 };
 
 // Height of a point above the plane of struct orl_ground, in scene units; negative below it.
 static double plane_height(const double plane[4], const double at[3])
 {
     return orl_dot3(plane, at) + plane[3];
-}
-
-// Principal eigenvector of the centres' covariance, by power iteration.
-static void find_along(struct sample *s)
-{
-    double mean[3] = {0}, c[3][3] = {{0}};
-    for (int i = 0; i < s->photo_count; i++)
-        for (int k = 0; k < 3; k++)
-            mean[k] += s->centres[i][k] / s->photo_count;
-    for (int i = 0; i < s->photo_count; i++)
-        for (int k = 0; k < 3; k++)
-            for (int l = 0; l < 3; l++)
-                c[k][l] += (s->centres[i][k] - mean[k]) * (s->centres[i][l] - mean[l]);
-    double v[3] = {0.8, 0.5, 0.3};
-    for (int n = 0; n < 64; n++) {
-        double next[3] = {orl_dot3(c[0], v), orl_dot3(c[1], v), orl_dot3(c[2], v)};
-        if (!(orl_normalize3(next) > 0))
-            break;
-        for (int k = 0; k < 3; k++)
-            v[k] = next[k];
-    }
-    for (int k = 0; k < 3; k++)
-        s->along[k] = v[k];
 }
 
 static void take_photos(const struct orl_scene *scene, struct sample *s)
@@ -107,7 +81,6 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
     ORL_TRY_MEMORY(s->position && s->normal);
     s->tolerance = TOLERANCE * scene->photo_distance;
     take_photos(scene, s);
-    find_along(s);
     orl_scene_mean_up(scene, s->up);
     double total = 0, passed = 0;
     for (size_t i = 0; i < points->count; i++)
@@ -147,7 +120,7 @@ static double stood_height(const struct sample *s, double plane[4])
     return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
 }
 
-// Weighted share of the points that support the plane as ground; negative: they contradict it.
+// Share of the points that support the plane as ground; negative: they contradict it.
 static double score(const struct sample *s, const double plane[4], double height)
 {
     double tolerance = s->tolerance, mean[3] = {0}, squares = 0;
@@ -157,10 +130,9 @@ static double score(const struct sample *s, const double plane[4], double height
         const double *at = s->position[i];
         double off = plane_height(plane, at);
         beneath += off < -BENEATH * tolerance;
-        if (fabs(off) > tolerance)
+        if (fabs(off) > tolerance || !(orl_dot3(s->normal[i], plane) > ALIGNED_COSINE))
             continue;
-        counted += (1 - off * off / (tolerance * tolerance)) *
-                   (orl_dot3(s->normal[i], plane) > ALIGNED_COSINE ? ALIGNED_COUNTS : 1);
+        counted += 1 - off * off / (tolerance * tolerance);
         on++;
         squares += orl_dot3(at, at);
         for (int k = 0; k < 3; k++)
@@ -169,25 +141,16 @@ static double score(const struct sample *s, const double plane[4], double height
     double extent2 = on ? squares / on - orl_dot3(mean, mean) / ((double)on * on) : 0;
     if (beneath > BENEATH_MAX * s->count || extent2 < EXTENT * EXTENT * height * height)
         return -1;
-    return (counted - BENEATH_COUNTS * beneath) / s->count;
+    return (counted - beneath) / s->count;
 }
 
-// A plane through point i, either perpendicular to the point's normal or through another point and
-// parallel to the camera path. The second serves where only the foot of a facade is reconstructed.
-static bool candidate(const struct sample *s, int i, int pair, double plane[4])
+// The plane of point i.
+static bool candidate(const struct sample *s, int i, double plane[4])
 {
-    const double *at = s->position[i];
     for (int k = 0; k < 3; k++)
         plane[k] = s->normal[i][k];
-    if (pair > 0) {
-        // Multiplicative hashing spreads the partners evenly over the points.
-        uint32_t other = ((uint32_t)i * PAIRS + (uint32_t)pair) * 2654435761u;
-        const double *b = s->position[((uint64_t)other * (uint64_t)s->count) >> 32];
-        const double to[3] = {b[0] - at[0], b[1] - at[1], b[2] - at[2]};
-        orl_cross3(s->along, to, plane);
-    }
     double length = orl_normalize3(plane);
-    plane[3] = -orl_dot3(plane, at);
+    plane[3] = -orl_dot3(plane, s->position[i]);
     return length > 0 && isfinite(length);
 }
 
@@ -200,19 +163,18 @@ enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scen
     if (result != ORL_OK || s.photo_count < 3)
         goto finish;
     double best = SCORE_MIN;
-    for (int i = 0; i < s.count; i++)
-        for (int pair = 0; pair <= PAIRS; pair++) {
-            double plane[4], height;
-            if (!candidate(&s, i, pair, plane) || (height = stood_height(&s, plane)) == 0)
-                continue;
-            double here = score(&s, plane, height);
-            if (!(here > best)) // true also for NaN
-                continue;
-            best = here;
-            ground->height = height;
-            for (int k = 0; k < 4; k++)
-                ground->plane[k] = plane[k];
-        }
+    for (int i = 0; i < s.count; i++) {
+        double plane[4], height;
+        if (!candidate(&s, i, plane) || (height = stood_height(&s, plane)) == 0)
+            continue;
+        double here = score(&s, plane, height);
+        if (!(here > best)) // true also for NaN
+            continue;
+        best = here;
+        ground->height = height;
+        for (int k = 0; k < 4; k++)
+            ground->plane[k] = plane[k];
+    }
 finish:
     free(s.position);
     free(s.normal);

@@ -111,7 +111,7 @@ static void there_may_be_none(void **state)
     struct orl_ground ground;
     // From a kite: at heights of every kind.
     for (int i = 0; i < PHOTOS; i++) {
-        const double eye[3] = {0.7 * i - 3, -1.5 * i, 0}, target[3] = {0, 0, 10}, up[3] = {0, -1, 0};
+        const double eye[3] = {0.7 * i - 3, 1.2 - 0.25 * i, 0}, target[3] = {0, 0, 10}, up[3] = {0, -1, 0};
         s.photos[i].view.cam_from_world = orl_pose_look_at(eye, target, up);
     }
     ground = find(&s);
@@ -152,6 +152,19 @@ static void few_points_are_no_ground(void **state)
     (void)state;
     struct street s;
     build_facade(&s);
+    assert_float_equal(find(&s).height, 0, 0);
+    orl_points_finish(&s.scene.points);
+}
+
+// A quarter of a facade's points lie along its foot, and three points beside it look up.
+static void the_foot_of_a_facade_is_no_ground(void **state)
+{
+    enum { UPWARD = 3 };
+    (void)state;
+    struct street s;
+    build(&s, UPWARD);
+    for (size_t i = UPWARD; i < UPWARD + FACADE; i += 4)
+        s.scene.points.position[i][1] = 1.6f;
     assert_float_equal(find(&s).height, 0, 0);
     orl_points_finish(&s.scene.points);
 }
@@ -218,6 +231,7 @@ int main(void)
         cmocka_unit_test(held_out_photographs_have_no_say),
         cmocka_unit_test(there_may_be_none),
         cmocka_unit_test(few_points_are_no_ground),
+        cmocka_unit_test(the_foot_of_a_facade_is_no_ground),
         cmocka_unit_test(walls_are_no_ground),
         cmocka_unit_test(floors_above_the_ground_are_none),
         cmocka_unit_test(a_ceiling_is_none),
