@@ -1,7 +1,7 @@
 // Depth for surfaces without texture, such as plain walls and signs, from the surfaces around them. As the planar
-// prior of ACMP (Xu and Tao 2020) it continues planes, but what is around reaches a pixel by a diffusion whose
-// conductivity falls at the edges of the photograph (Perona and Malik 1990), so that it passes around print,
-// stains and handrails, and not from a wall to the sky.
+// prior of ACMP does (Xu and Tao 2020), it continues planes. They spread by a diffusion whose conductivity falls at
+// the edges of the photograph (Perona and Malik 1990), so that they pass around print and stains, but not from a wall
+// to the sky.
 #include <math.h>
 #include <stdlib.h>
 
@@ -42,7 +42,7 @@ struct receiver {
 };
 
 struct diffusion {
-    const struct densify_maps *maps; // before completion
+    struct densify_maps *maps;
     const struct orl_image *luma;
     struct orl_camera camera;
     float reach;                // pixels
@@ -150,7 +150,7 @@ static void diffuse(const struct diffusion *d)
 }
 
 // Sets the depth and the normal of an open pixel if what it receives agrees.
-static void complete_pixel(const struct diffusion *d, int x, int y, struct densify_maps *maps)
+static void complete_pixel(const struct diffusion *d, int x, int y)
 {
     size_t at = index_of(d, x, y);
     const struct received *r = received_at(d, x, y);
@@ -164,10 +164,10 @@ static void complete_pixel(const struct diffusion *d, int x, int y, struct densi
     if (!(r->sure > SURE_MIN) || !(fabsf(off) < LUMA_MAX) || !(inverse > 0.0f) || !agree)
         return;
     float length = sqrtf(dot(n, n));
-    maps->depth.f32[at] = 1.0f / inverse;
-    maps->confidence.f32[at] = CONFIDENCE;
+    d->maps->depth.f32[at] = 1.0f / inverse;
+    d->maps->confidence.f32[at] = CONFIDENCE;
     for (int k = 0; k < 3; k++)
-        maps->normal.f32[3 * at + (size_t)k] = -n[k] / length;
+        d->maps->normal.f32[3 * at + (size_t)k] = -n[k] / length;
 }
 
 enum orl_result orl_densify_complete(const struct orl_log *log, const struct densify_job *job,
@@ -192,7 +192,7 @@ enum orl_result orl_densify_complete(const struct orl_log *log, const struct den
     for (int y = 0; result == ORL_OK && y < height; y++)
         for (int x = 0; x < width; x++)
             if (!(maps->depth.f32[index_of(&d, x, y)] > 0.0f) && orl_densify_mask_at(&job->mask, job->finest, x, y))
-                complete_pixel(&d, x, y, maps);
+                complete_pixel(&d, x, y);
     free(d.received);
     free(d.receivers);
     return result;
