@@ -12,28 +12,29 @@ float speck_light(vec3 color)
     return sqrt(sqrt(dot(color, vec3(0.299, 0.587, 0.114))));
 }
 
-int speck_differs(float light, float other)
+// Whether another pixel is darker, and whether it is lighter: 1 or 0.
+ivec2 speck_others(float own, float other)
 {
-    return abs(light - other) > SPECK_FROM ? 1 : 0;
+    return ivec2(other < own - SPECK_FROM ? 1 : 0, other > own + SPECK_FROM ? 1 : 0);
 }
 
-// Whether a pixel can be a speck: it differs from three or more of the 3x3 around. Few pixels do.
+// Whether a pixel can be a speck: three or more of the 3x3 around are darker, or lighter. Few pixels do.
 // light: of speck_light, row by row.
 bool speck_suspect(float light[9])
 {
-    int others = 0;
+    ivec2 others = ivec2(0);
     for (int k = 0; k < 9; k++)
-        others += speck_differs(light[k], light[4]);
-    return others >= 3;
+        others += speck_others(light[4], light[k]);
+    return max(others.x, others.y) >= 3;
 }
 
-// Whether it differs from most of the 5x5 around, as it does if it differs from their median.
+// Whether it differs from the median of the 5x5 around: most are darker, or most are lighter.
 bool speck_stands_out(float light[25])
 {
-    int others = 0;
+    ivec2 others = ivec2(0);
     for (int k = 0; k < 25; k++)
-        others += speck_differs(light[k], light[12]);
-    return others > 12;
+        others += speck_others(light[12], light[k]);
+    return max(others.x, others.y) > 12;
 }
 
 // Index of the median.
@@ -41,10 +42,10 @@ int speck_median(float values[25])
 {
     int median = 12;
     for (int i = 0; i < 25; i++) {
-        int below = 0;
+        int before = 0;
         for (int k = 0; k < 25; k++)
-            below += values[k] < values[i] || (values[k] == values[i] && k < i) ? 1 : 0;
-        median = below == 12 ? i : median;
+            before += (k < i ? values[k] <= values[i] : values[k] < values[i]) ? 1 : 0;
+        median = before == 12 ? i : median;
     }
     return median;
 }
@@ -53,9 +54,9 @@ int speck_median(float values[25])
 // varies: how much the best photograph of each varies about its place.
 int speck_taken(float light[25], float varies[25])
 {
-    int median = speck_median(light);
-    float own = light[12], most = light[median];
-    bool speck = speck_differs(own, most) > 0 &&
-                 abs(own * own - most * most) > SPECK_VARIES * varies[speck_median(varies)];
-    return speck ? median : 12;
+    int median = speck_median(light), quiet = 0; // pixels whose photographs vary less than the middle differs
+    float differs = abs(light[12] * light[12] - light[median] * light[median]);
+    for (int k = 0; k < 25; k++)
+        quiet += SPECK_VARIES * varies[k] < differs ? 1 : 0;
+    return speck_stands_out(light) && quiet > 12 ? median : 12;
 }
