@@ -87,6 +87,12 @@ class TimeSteps(unittest.TestCase):
         browser.open(server.address)
         browser.js("oriel.navigator.setView(oriel.navigator.view, null); oriel.navigator.goTo(oriel.photos[1])")
         browser.settle()
+        # The page says how much there is to load: each file once, without thumbnails.
+        self.assertEqual(*browser.js(
+            "const {manifest, moving, allBytes} = oriel.picture, {points} = manifest; "
+            "const files = [points.coarse, ...points.files, ...moving.steps.flatMap(step => step.files)]; "
+            "const bytes = new Map(files.map(file => [file.file, file.bytes])); "
+            "return [allBytes, [...bytes.values()].reduce((a, b) => a + b)]"))
         # In any order, each time step at a photograph's place looks like its own photograph best.
         for shown in (2, 0, 1):
             browser.js(f"oriel.timeSteps.show({shown})")

@@ -23,9 +23,10 @@ function photoBudget()
     return (gigabytes >= 8 ? 768 : gigabytes >= 4 ? 384 : 160) * 2 ** 20;
 }
 
-// Without thumbnails.
-const totalBytes = ({photos, points, soft}) => bytesOf([points.coarse, ...points.files, ...photos.flatMap(filesOf),
-                                                        ...(soft ? [soft, ...photos.map(photo => photo.soft)] : [])]);
+// Without thumbnails. Photographs of time steps are counted with these.
+const totalBytes = ({photos, points, soft, steps}) => bytesOf([points.coarse, ...points.files,
+                                                               ...(steps ? [] : photos.flatMap(filesOf)),
+                                                               ...(soft ? [soft, ...photos.map(photo => photo.soft)] : [])]);
 
 const decodeFile = async (files, {file}) => decodePicture(await files.get(file));
 
