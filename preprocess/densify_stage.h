@@ -8,9 +8,6 @@
 
 // What the stereo does by the options of prepare.
 struct orl_densify_params orl_densify_settings(const struct orl_prepare_params *params);
-// Writes SCENE/stereo.
-enum orl_result orl_stage_densify(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
-
 // Makes SCENE/stereo ready for the parts of the built-in stereo (orl_densify_begin); for COLMAP's,
 // which has no parts, it does nothing.
 enum orl_result orl_stage_densify_begin(struct orl_job *job) ORL_CHECK_RESULT;

@@ -1,5 +1,4 @@
-#include "preprocess/occluders_stage.h"
-
+// Occluders: what photographs show before the scene and has no points (eval/occluder_masks.h).
 #include <stdlib.h>
 
 #include "core/file.h"

@@ -7,7 +7,6 @@
 #include "core/process.h"
 #include "eval/refine.h"
 #include "preprocess/drawing.h"
-#include "preprocess/photos/collect.h"
 #include "preprocess/scene_json.h"
 #include "preprocess/stages.h"
 #include "scene/manifest.h"

@@ -1,5 +1,4 @@
-#include "preprocess/tune_stage.h"
-
+// What suits the scene: settings of its method, and whether its backdrop rests.
 #include <math.h>
 
 #include "eval/search.h"

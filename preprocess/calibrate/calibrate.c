@@ -1,5 +1,4 @@
-#include "preprocess/calibrate/calibrate.h"
-
+// Calibrate: camera positions and intrinsics, by COLMAP's structure from motion.
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,4 @@
-#include "preprocess/calibrate/undistort.h"
-
+// Undistort: pinhole photographs and the sparse model that belongs to them.
 #include <stdio.h>
 
 #include "preprocess/calibrate/companions.h"

@@ -7,10 +7,6 @@
 
 enum { ORL_FUSE_VERSION = 9 }; // raised when the points of the same maps change
 
-json_t *orl_stage_fuse_settings(const struct orl_job *job);
-// Writes .oriel/fused.ply. Clouds of clusters that oriel job fuse has made are used.
-enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
-
 // Clusters the photographs `train` of the model: at most `asked` a cluster (--fuse-cluster), or where
 // that is 0, as many as fit in `budget` bytes and no more than 400. The model must outlive the
 // clusters.

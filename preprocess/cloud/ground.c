@@ -1,5 +1,5 @@
-#include "preprocess/cloud/ground.h"
-
+// Ground: the plane below the cameras.
+#include "preprocess/job/job.h"
 #include "scene/manifest.h"
 
 enum orl_result orl_stage_ground(struct orl_job *job, json_t *record)

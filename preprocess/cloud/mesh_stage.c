@@ -1,5 +1,4 @@
-#include "preprocess/cloud/mesh_stage.h"
-
+// The stage mesh: a triangle mesh of the scene, made by COLMAP (docs/how/pipeline.md).
 #include <stdlib.h>
 
 #include "core/file.h"

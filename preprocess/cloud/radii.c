@@ -1,8 +1,8 @@
-#include "preprocess/cloud/radii.h"
-
+// Radii: a radius and a normal for each point of the fused cloud.
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "preprocess/job/job.h"
 #include "scene/manifest.h"
 #include "scene/point_lod.h"
 #include "scene/point_stream.h"

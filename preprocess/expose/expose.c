@@ -1,3 +1,5 @@
+// Expose: the exposure of each photograph and its series, the response of its camera, and the gains
+// and vignetting that bring photographs to one exposure and white balance.
 #include "preprocess/expose/expose.h"
 
 #include <math.h>
@@ -10,6 +12,7 @@
 #include "preprocess/expose/gain_guess.h"
 #include "preprocess/expose/metered.h"
 #include "preprocess/expose/response.h"
+#include "preprocess/job/job.h"
 #include "oriel/scene.h"
 #include "scene/point_lod.h"
 

@@ -1,9 +1,8 @@
-// Expose: the exposure of each photograph and its series, the response of its camera, and the gains
-// and vignetting that bring photographs to one exposure and white balance.
+// Exposures of photographs, and the series that they form.
 #ifndef ORL_PREPROCESS_EXPOSE_H
 #define ORL_PREPROCESS_EXPOSE_H
 
-#include "preprocess/job/job.h"
+#include "oriel/log.h"
 
 struct orl_exposure {
     bool known;  // in: true when ev is set
@@ -23,8 +22,5 @@ struct orl_exposure {
 enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
                                     size_t count, double step_ev,
                                     int *series_count) ORL_CHECK_RESULT;
-
-// Sets exposure, series, gain, vignetting and response of every photograph in `record`.
-enum orl_result orl_stage_expose(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 
 #endif

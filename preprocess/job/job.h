@@ -1,5 +1,5 @@
 // The job of oriel prepare: its input, the folder that it works in, and the results of the stages
-// so far. All stages share the job, which depends on none of them.
+// so far. All stages share the job, which calls none of them.
 #ifndef ORL_PREPROCESS_JOB_H
 #define ORL_PREPROCESS_JOB_H
 
@@ -157,5 +157,43 @@ enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
 void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model);
 // Names of the photographs in the undistorted model that are not held out.
 enum orl_result orl_job_train_names(struct orl_job *job, struct orl_names *names) ORL_CHECK_RESULT;
+
+// --- the stages, each in a file of its name ---
+
+// Of `record`: what is worth keeping, such as settings as used, and counts.
+
+// Lists and checks the photographs, and links them into .oriel/photos.
+enum orl_result orl_stage_collect(struct orl_job *job) ORL_CHECK_RESULT;
+// Leaves .oriel/calibrate/model, of the photographs that could be placed.
+enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Makes the folder of the calibration ready for jobs (calibrate/parts.h), which keep what they have done.
+enum orl_result orl_calibrate_begin(struct orl_job *job) ORL_CHECK_RESULT;
+// Leaves SCENE/images and SCENE/sparse, and what travels with them (calibrate/companions.h).
+enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Writes SCENE/stereo.
+enum orl_result orl_stage_densify(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Writes .oriel/fused.ply. Clouds of clusters that oriel job fuse has made are used.
+enum orl_result orl_stage_fuse(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+json_t *orl_stage_fuse_settings(const struct orl_job *job);
+// Writes SCENE/points.ply, with a radius and a normal for each point, or SCENE/points.lod where the
+// cloud is larger than memory, and removes the other.
+enum orl_result orl_stage_radii(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+json_t *orl_stage_radii_settings(const struct orl_job *job);
+// Sets "ground" of `record` to the plane that the points tell, so that no one who opens the scene need look
+// for it; null when there is no ground.
+enum orl_result orl_stage_ground(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Writes SCENE/mesh.ply as params->mesh asks. ORL_ERR_EXTERNAL: COLMAP failed, or was built without
+// the mesher.
+enum orl_result orl_stage_mesh(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Sets exposure, series, gain, vignetting and response of every photograph in `record`.
+enum orl_result orl_stage_expose(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Renders some training photographs, each from the others, and sets in `record` what brings them closer: "tuned", the
+// settings of the scene's method as orl_search_record has them, and "backdrop" (orl_manifest_backdrop). Held-out
+// photographs take no part. Without a device, or with fewer than five photographs, "tuned" is empty and the backdrop moves.
+enum orl_result orl_stage_tune(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
+// Writes SCENE/occluders/NAME.png of each training photograph that shows any, and sets "occluded" in
+// `record`: the share of the picture by name. Without a device, or with too few photographs, none
+// are found.
+enum orl_result orl_stage_occluders(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 
 #endif

@@ -1,5 +1,4 @@
-#include "preprocess/photos/collect.h"
-
+// Collect: lists the photographs given and finds those that can be used.
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>

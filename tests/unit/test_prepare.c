@@ -9,7 +9,6 @@
 #include "preprocess/expose/expose.h"
 #include "preprocess/job/colmap_run.h"
 #include "preprocess/photos/doubts.h"
-#include "preprocess/photos/collect.h"
 #include "oriel/prepare.h"
 #include "test.h"
 
