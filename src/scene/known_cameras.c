@@ -178,13 +178,25 @@ enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint
 
 // --- values in JSON ---
 
-bool orl_known_json_number(const json_t *object, const char *key, double *value)
+static bool read_number(const json_t *item, double *value)
 {
-    const json_t *item = json_object_get(object, key);
     const char *text = json_string_value(item);
     char *end = NULL;
     *value = text ? strtod(text, &end) : json_number_value(item);
     return (text ? end != text && !*end : json_is_number(item)) && isfinite(*value);
+}
+
+bool orl_known_json_number(const json_t *object, const char *key, double *value)
+{
+    return read_number(json_object_get(object, key), value);
+}
+
+bool orl_known_json_numbers(const json_t *array, size_t count, double *values)
+{
+    bool good = json_array_size(array) == count;
+    for (size_t i = 0; good && i < count; i++)
+        good = read_number(json_array_get(array, i), &values[i]);
+    return good;
 }
 
 void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object)

@@ -10,39 +10,6 @@
 #include "scene/colmap_internal.h"
 #include "scene/known_internal.h"
 
-// --- recognised by content ---
-
-static bool is_own(const json_t *root)
-{
-    return json_is_array(json_object_get(root, "cameras")) && !json_object_get(root, "shots");
-}
-
-static bool is_inria(const json_t *root)
-{
-    return json_is_array(root) && !json_object_get(json_array_get(root, 0), "shots");
-}
-
-static bool is_transforms(const json_t *root)
-{
-    return json_is_array(json_object_get(root, "frames"));
-}
-
-static bool is_opensfm(const json_t *root)
-{
-    return json_is_array(root) && json_is_object(json_object_get(json_array_get(root, 0), "shots"));
-}
-
-static bool is_meshroom(const json_t *root)
-{
-    return json_is_array(json_object_get(root, "views")) &&
-           json_is_array(json_object_get(root, "intrinsics"));
-}
-
-static bool is_record3d(const json_t *root)
-{
-    return json_is_array(json_object_get(root, "poses")) && json_is_array(json_object_get(root, "K"));
-}
-
 // --- COLMAP ---
 
 // Names of pictures as other systems write them.
@@ -78,37 +45,39 @@ static enum orl_result read_colmap(const struct orl_known_source *source,
 
 // --- the table ---
 
-// A format. Files that are JSON, whatever their names, are recognised by `is_json`, others by the
-// last part of a pattern.
+// What a reader is given besides the path: of JSON its root, of text its lines, else all bytes.
+enum content { PATH, FOLDER, JSON, TEXT, BYTES };
+
+// A format. Files that are JSON, whatever their names, are recognised by their keys, others by the last
+// part of a pattern.
 struct format {
     const char *name;
     const char *files; // what a folder is searched for: patterns of names, separated by spaces
-    bool (*is_json)(const json_t *root);
-    bool of_folder; // the reader takes the folder, not the file found in it
+    enum content content; // FOLDER: the reader takes the folder, not the file found in it
     orl_known_reader *read;
+    const char *arrays[2]; // JSON: the root has arrays of these names; of a list, its entries have objects
+    bool is_list;          // JSON: the root is a list
 };
 
 // A folder that has several is read as the first of them.
 static const struct format formats[] = {
-    {"COLMAP model", "cameras.bin cameras.txt images.bin images.txt", NULL, false,
-     read_colmap},
-    {"Oriel's cameras.json", "cameras.json", is_own, false, orl_known_read_own},
-    {"Inria's cameras.json", "cameras.json", is_inria, false, orl_known_read_inria},
-    {"transforms.json (nerfstudio, instant-ngp, Blender)", "transforms.json", is_transforms, false,
-     orl_known_read_transforms},
-    {"Blender's set", "transforms_train.json", NULL, true, orl_known_read_splits},
-    {"OpenSfM", "reconstruction.json opensfm/reconstruction.json", is_opensfm, false,
-     orl_known_read_opensfm},
-    {"Bundler", "bundle/bundle.out bundle.out *.out", NULL, false, orl_known_read_bundler},
-    {"LLFF", "poses_bounds.npy", NULL, false, orl_known_read_llff},
-    {"Record3D", "metadata.json EXR_RGBD/metadata.json", is_record3d, false, orl_known_read_record3d},
-    {"Polycam", "keyframes/cameras keyframes/corrected_cameras cameras corrected_cameras", NULL, true,
-     orl_known_read_polycam},
-    {"Middlebury", "*_par.txt", NULL, false, orl_known_read_middlebury},
-    {"Meshroom", "*.sfm", is_meshroom, false, orl_known_read_meshroom},
-    {"VisualSFM", "*.nvm", NULL, false, orl_known_read_nvm},
-    {"Metashape", "*.xml", NULL, false, orl_known_read_metashape},
-    {"RealityScan", "*.csv", NULL, false, orl_known_read_realityscan},
+    {"COLMAP model", "cameras.bin cameras.txt images.bin images.txt", PATH, read_colmap, {0}, false},
+    {"Oriel's cameras.json", "cameras.json", JSON, orl_known_read_own, {"cameras"}, false},
+    {"OpenSfM", "reconstruction.json opensfm/reconstruction.json", JSON, orl_known_read_opensfm, {"shots"}, true},
+    {"Inria's cameras.json", "cameras.json", JSON, orl_known_read_inria, {0}, true},
+    {"transforms.json (nerfstudio, instant-ngp, Blender)", "transforms.json", JSON, orl_known_read_transforms,
+     {"frames"}, false},
+    {"Blender's set", "transforms_train.json", FOLDER, orl_known_read_splits, {0}, false},
+    {"Bundler", "bundle/bundle.out bundle.out *.out", TEXT, orl_known_read_bundler, {0}, false},
+    {"LLFF", "poses_bounds.npy", BYTES, orl_known_read_llff, {0}, false},
+    {"Record3D", "metadata.json EXR_RGBD/metadata.json", JSON, orl_known_read_record3d, {"poses", "K"}, false},
+    {"Polycam", "keyframes/cameras keyframes/corrected_cameras cameras corrected_cameras", FOLDER,
+     orl_known_read_polycam, {0}, false},
+    {"Middlebury", "*_par.txt", TEXT, orl_known_read_middlebury, {0}, false},
+    {"Meshroom", "*.sfm", JSON, orl_known_read_meshroom, {"views", "intrinsics"}, false},
+    {"VisualSFM", "*.nvm", TEXT, orl_known_read_nvm, {0}, false},
+    {"Metashape", "*.xml", BYTES, orl_known_read_metashape, {0}, false},
+    {"RealityScan", "*.csv", TEXT, orl_known_read_realityscan, {0}, false},
 };
 
 char *orl_known_formats_text(const struct orl_log *log)
@@ -136,7 +105,7 @@ static bool next_pattern(const char **at, char pattern[PATTERN_BYTES])
 static bool matches(const struct format *format, const char *name)
 {
     char pattern[PATTERN_BYTES];
-    for (const char *at = format->files; !format->of_folder && next_pattern(&at, pattern);)
+    for (const char *at = format->files; format->content != FOLDER && next_pattern(&at, pattern);)
         if (fnmatch(orl_path_name(pattern), name, 0) == 0)
             return true;
     return false;
@@ -156,10 +125,33 @@ static enum orl_result read_with(const struct format *format,
                                  const struct orl_known_source *source,
                                  struct orl_known_cameras *known)
 {
-    ORL_TRY(format->read(source, known));
+    struct orl_known_source opened = *source;
+    struct orl_text_lines lines = {0};
+    uint8_t *data = NULL;
+    enum orl_result result = ORL_OK;
+    if (format->content == TEXT)
+        result = orl_text_open(source->log, source->path, opened.lines = &lines);
+    else if (format->content == BYTES)
+        result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &opened.size);
+    opened.data = data;
+    ORL_THEN(result, format->read(&opened, known));
+    orl_text_close(&lines);
+    free(data);
+    ORL_TRY(result);
     orl_logf(source->log, ORL_LOG_INFO, "%s: %s: %zu cameras, %zu points", source->path,
              format->name, known->model.image_count, known->model.point_count);
     return ORL_OK;
+}
+
+static bool fits(const struct format *format, const json_t *root)
+{
+    const json_t *object = format->is_list ? json_array_get(root, 0) : root;
+    bool good = format->content == JSON && json_is_array(root) == format->is_list;
+    for (int i = 0; i < 2 && format->arrays[i]; i++) {
+        const json_t *value = json_object_get(object, format->arrays[i]);
+        good = good && (format->is_list ? json_is_object(value) : json_is_array(value));
+    }
+    return good;
 }
 
 static enum orl_result read_json(const struct orl_known_source *source,
@@ -175,7 +167,7 @@ static enum orl_result read_json(const struct orl_known_source *source,
     ORL_TRY(result);
     const struct format *found = NULL;
     for (size_t i = 0; i < ORL_COUNT(formats) && !found; i++)
-        if (formats[i].is_json && formats[i].is_json(root))
+        if (fits(&formats[i], root))
             found = &formats[i];
     with_root.root = root;
     result = found ? read_with(found, &with_root, known) : unknown(source->log, source->path);
@@ -335,7 +327,7 @@ static enum orl_result read_folder(const struct orl_known_source *source,
                         "files that are searched for", source->path);
     struct orl_known_source found = *source;
     found.path = file;
-    enum orl_result result = format->of_folder ? read_with(format, source, known) : read_file(&found, known);
+    enum orl_result result = format->content == FOLDER ? read_with(format, source, known) : read_file(&found, known);
     cut_to_base(source->path, file);
     memcpy(known->folder, file, sizeof file);
     return result;

@@ -6,6 +6,7 @@
 
 #include "oriel/names.h"
 #include "scene/known_cameras.h"
+#include "scene/text_lines.h"
 
 // COLMAP's ids of the camera models that other programs' cameras are converted to.
 enum { ORL_COLMAP_PINHOLE = 1, ORL_COLMAP_RADIAL = 3, ORL_COLMAP_OPENCV = 4,
@@ -46,7 +47,6 @@ enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint
 // Reads the rest of a line: the number of a point's views, then of each its camera's index, the feature's
 // index, x and y. image_of[camera]: its image, -1: none; NULL: that of the same index. Notes them unless
 // the point, at the end of the model, was left out.
-struct orl_text_lines;
 enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
                                      const int64_t *image_of, size_t points_before,
                                      struct orl_colmap_model *model) ORL_CHECK_RESULT;
@@ -63,6 +63,9 @@ struct orl_known_source {
     const char *path;    // of the file or, for formats of many files, the folder
     double pixel_centre; // negative: the format's convention
     const json_t *root;  // of a file in JSON
+    struct orl_text_lines *lines; // of a file of text, ahead of the first
+    const uint8_t *data; // of another file
+    size_t size;
 };
 // Appends the cameras of a source, and sets what else the file states.
 typedef enum orl_result orl_known_reader(const struct orl_known_source *source,
@@ -85,7 +88,9 @@ void orl_known_say_unused(const struct orl_known_source *source, struct orl_know
 void orl_known_say_unused_of(const struct orl_known_source *source, const json_t *root,
                              const char *const *used, const char *const *lists);
 
-// The number of a key, which may be written as a string. False when it is missing or not finite.
+// The number of a key, or those of an array, which may be written as strings. False when they are missing,
+// as many others or not finite.
 bool orl_known_json_number(const json_t *object, const char *key, double *value);
+bool orl_known_json_numbers(const json_t *array, size_t count, double *values);
 
 #endif

@@ -339,7 +339,8 @@ enum orl_result orl_known_read_splits(const struct orl_known_source *source,
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++) {
         json_t *root = NULL;
         const char *path = ORL_PATH(source->path, "%s", files[i].name);
-        struct orl_known_source part = {source->log, path, source->pixel_centre, NULL};
+        struct orl_known_source part = *source;
+        part.path = path;
         enum orl_known_split split = files[i].split == ORL_KNOWN_UNUSED && !tests ? ORL_KNOWN_TEST
                                                                                   : files[i].split;
         if (orl_path_is_file(path)) {

@@ -23,9 +23,10 @@ static const char *value_of(const char *header, const char *key)
 }
 
 // Checks NumPy's header (format 1.0 to 3.0) and finds the numbers behind it.
-static enum orl_result find_numbers(const struct orl_known_source *source, const uint8_t *data,
-                                    size_t size, size_t *count, size_t *at)
+static enum orl_result find_numbers(const struct orl_known_source *source, size_t *count, size_t *at)
 {
+    const uint8_t *data = source->data;
+    const size_t size = source->size;
     char header[512] = "";
     if (size < 12 || memcmp(data, "\x93NUMPY", 6) != 0 || data[6] < 1 || data[6] > 3)
         return bad(source, "not NumPy's array");
@@ -91,21 +92,18 @@ static enum orl_result list_pictures(const struct orl_known_source *source, cons
 enum orl_result orl_known_read_llff(const struct orl_known_source *source,
                                     struct orl_known_cameras *known)
 {
-    uint8_t *data = NULL;
-    size_t size, count = 0, at = 0;
+    size_t count = 0, at = 0;
     struct orl_names names = {0};
-    enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
-    ORL_THEN(result, find_numbers(source, data, size, &count, &at));
+    enum orl_result result = find_numbers(source, &count, &at);
     ORL_THEN(result, list_pictures(source, known->folder, &names));
     if (result == ORL_OK && names.count != count)
         result = orl_fail(source->log, ORL_ERR_DATA, "%s: %zu cameras, but images/ has %zu files",
                           source->path, count, names.count);
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         double numbers[NUMBERS];
-        memcpy(numbers, data + at + i * sizeof numbers, sizeof numbers);
+        memcpy(numbers, source->data + at + i * sizeof numbers, sizeof numbers);
         result = read_pose(source, numbers, ORL_PATH("images", "%s", names.items[i]), known);
     }
     orl_names_finish(&names);
-    free(data);
     return result;
 }

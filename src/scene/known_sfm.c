@@ -152,23 +152,6 @@ static json_t *index_by(const json_t *list, const char *key)
     return index;
 }
 
-// Reads numbers that are written as strings.
-static bool read_texts(const json_t *array, size_t count, double *values)
-{
-    if (json_array_size(array) != count)
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        const json_t *item = json_array_get(array, i);
-        char *end;
-        values[i] = json_is_string(item) ? strtod(json_string_value(item), &end)
-                                         : json_number_value(item);
-        if (!isfinite(values[i]) || (!json_is_string(item) && !json_is_number(item)) ||
-            (json_is_string(item) && (end == json_string_value(item) || *end)))
-            return false;
-    }
-    return true;
-}
-
 // Sets f_c from the versions' different fields: a focal length in pixels up to 1.2.0, for x and y from
 // 1.2.0, in millimetres of the sensor later. The principal point counts from the picture's corner before
 // 1.2.1, and from its centre since.
@@ -181,8 +164,8 @@ static const char *read_meshroom_pinhole(const json_t *root, const json_t *lens,
         return "its size is missing";
     camera->width = (int)width;
     camera->height = (int)height;
-    (void)read_texts(json_object_get(root, "version"), 3, version);
-    if (read_texts(json_object_get(lens, "pxFocalLength"), 2, f_c)) {
+    (void)orl_known_json_numbers(json_object_get(root, "version"), 3, version);
+    if (orl_known_json_numbers(json_object_get(lens, "pxFocalLength"), 2, f_c)) {
         // as it is
     } else if (orl_known_json_number(lens, "pxFocalLength", &f_c[0])) {
         f_c[1] = f_c[0];
@@ -194,7 +177,7 @@ static const char *read_meshroom_pinhole(const json_t *root, const json_t *lens,
         return "its focal length is missing";
     }
     bool of_centre = version[0] * 1e6 + version[1] * 1e3 + version[2] >= 1002001;
-    bool told = read_texts(json_object_get(lens, "principalPoint"), 2, centre);
+    bool told = orl_known_json_numbers(json_object_get(lens, "principalPoint"), 2, centre);
     f_c[2] = told ? centre[0] + (of_centre ? 0.5 * width : 0) : 0.5 * width;
     f_c[3] = told ? centre[1] + (of_centre ? 0.5 * height : 0) : 0.5 * height;
     return NULL;
@@ -222,7 +205,7 @@ static const char *read_meshroom_lens(const json_t *root, const json_t *lens,
         if (strcmp(kinds[i].type, type) != 0)
             continue;
         size_t count = json_array_size(list) && kinds[i].terms ? kinds[i].terms : 0;
-        if (!read_texts(list, count, given) && count)
+        if (!orl_known_json_numbers(list, count, given) && count)
             return "its distortionParams are not as many numbers as its type has";
         for (size_t k = 0; k < count; k++)
             terms[kinds[i].place[k]] = given[k];
@@ -261,8 +244,8 @@ static enum orl_result read_view(struct meshroom *m, const json_t *view,
     if (json_object_get(view, "subPoseId"))
         return bad(source, "view", id, "rigs of cameras are not supported");
     // The rotation cam_from_world is written column by column: its rows are those of the inverse.
-    if (!read_texts(json_object_get(transform, "rotation"), 9, &axes[0][0]) ||
-        !read_texts(json_object_get(transform, "center"), 3, centre) ||
+    if (!orl_known_json_numbers(json_object_get(transform, "rotation"), 9, &axes[0][0]) ||
+        !orl_known_json_numbers(json_object_get(transform, "center"), 3, centre) ||
         !orl_pose_from_axes(axes, centre, &camera.pose))
         return bad(source, "pose", pose_id, "no rotation and center");
     ORL_TRY(orl_known_add(source->log, source->path, id, &camera, known));
@@ -276,9 +259,9 @@ static enum orl_result read_landmark(const struct meshroom *m, const json_t *lan
     double at[3], rgb[3] = {128, 128, 128};
     const json_t *seen = json_object_get(landmark, "observations");
     size_t before = model->point_count;
-    if (!read_texts(json_object_get(landmark, "X"), 3, at))
+    if (!orl_known_json_numbers(json_object_get(landmark, "X"), 3, at))
         return bad(m->source, "landmark", "", "no X of 3 numbers");
-    (void)read_texts(json_object_get(landmark, "color"), 3, rgb);
+    (void)orl_known_json_numbers(json_object_get(landmark, "color"), 3, rgb);
     enum orl_result result = orl_known_add_point(m->source->log, at, rgb, model);
     for (size_t i = 0; result == ORL_OK && model->point_count > before && i < json_array_size(seen); i++) {
         const char *id = id_text(json_array_get(seen, i), "observationId", (char[ID_BYTES]){""});

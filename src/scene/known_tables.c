@@ -7,7 +7,6 @@
 
 #include "scene/colmap_internal.h"
 #include "scene/known_internal.h"
-#include "scene/text_lines.h"
 
 // --- NVM (http://ccwu.me/vsfm/doc.html#nvm) ---
 
@@ -69,8 +68,10 @@ static enum orl_result read_nvm_point(struct orl_text_lines *l, struct orl_colma
 }
 
 // The first model of the file; others are of photographs that could not be placed with it.
-static enum orl_result read_nvm(struct orl_text_lines *l, struct orl_known_cameras *known)
+enum orl_result orl_known_read_nvm(const struct orl_known_source *source,
+                                   struct orl_known_cameras *known)
 {
+    struct orl_text_lines *l = source->lines;
     double fixed[5] = {0}; // f cx f cy r of all cameras, after "FixedK"
     uint64_t cameras = 0, points = 0;
     if (!orl_text_next(l) || strncmp(l->at, "NVM_V3", 6) != 0)
@@ -92,16 +93,6 @@ static enum orl_result read_nvm(struct orl_text_lines *l, struct orl_known_camer
     for (uint64_t i = 0; result == ORL_OK && i < points; i++)
         result = orl_text_next(l) ? read_nvm_point(l, &known->model)
                                   : orl_text_bad(l, "fewer points than the file says");
-    return result;
-}
-
-enum orl_result orl_known_read_nvm(const struct orl_known_source *source,
-                                   struct orl_known_cameras *known)
-{
-    struct orl_text_lines l;
-    enum orl_result result = orl_text_open(source->log, source->path, &l);
-    ORL_THEN(result, read_nvm(&l, known));
-    orl_text_close(&l);
     return result;
 }
 
@@ -219,12 +210,9 @@ static enum orl_result read_heads(struct orl_text_lines *l, struct heads *heads)
 enum orl_result orl_known_read_realityscan(const struct orl_known_source *source,
                                            struct orl_known_cameras *known)
 {
-    struct orl_text_lines l;
     struct heads heads;
-    enum orl_result result = orl_text_open(source->log, source->path, &l);
-    ORL_THEN(result, read_heads(&l, &heads));
-    while (result == ORL_OK && orl_text_next(&l))
-        result = read_row(&l, &heads, known);
-    orl_text_close(&l);
-    return result;
+    ORL_TRY(read_heads(source->lines, &heads));
+    while (orl_text_next(source->lines))
+        ORL_TRY(read_row(source->lines, &heads, known));
+    return ORL_OK;
 }

@@ -6,7 +6,6 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/known_internal.h"
-#include "scene/text_lines.h"
 
 // --- Middlebury: a count, then lines NAME K R t, row by row ---
 
@@ -31,27 +30,23 @@ static enum orl_result read_par(struct orl_text_lines *l, double shift,
 enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
                                           struct orl_known_cameras *known)
 {
-    struct orl_text_lines l;
+    struct orl_text_lines *l = source->lines;
     uint64_t count = 0;
     double shift = 0.5 - (source->pixel_centre >= 0 ? source->pixel_centre : 0);
-    ORL_TRY(orl_text_open(source->log, source->path, &l));
-    enum orl_result result = ORL_OK;
-    if (!orl_text_next(&l) || !orl_text_id(&l, 1000000, &count) || *l.at)
-        result = orl_text_bad(&l, "the first line is not the number of cameras");
-    while (result == ORL_OK && known->model.image_count < count && orl_text_next(&l))
-        result = read_par(&l, shift, known);
-    if (result == ORL_OK && known->model.image_count < count)
-        result = orl_fail(l.log, ORL_ERR_FORMAT, "%s: line %zu: the file ends after %zu cameras of "
-                          "%llu", l.path, l.number, known->model.image_count,
-                          (unsigned long long)count);
-    orl_text_close(&l);
-    return result;
+    if (!orl_text_next(l) || !orl_text_id(l, 1000000, &count) || *l->at)
+        return orl_text_bad(l, "the first line is not the number of cameras");
+    while (known->model.image_count < count && orl_text_next(l))
+        ORL_TRY(read_par(l, shift, known));
+    return known->model.image_count == count
+               ? ORL_OK
+               : orl_fail(l->log, ORL_ERR_FORMAT, "%s: line %zu: the file ends after %zu cameras of %llu", l->path,
+                          l->number, known->model.image_count, (unsigned long long)count);
 }
 
 // --- Bundler (bundle.out v0.3): cameras f k1 k2, R, t with OpenGL's axes; points ---
 
 struct bundler {
-    struct orl_text_lines l;
+    struct orl_text_lines *l;
     struct orl_names pictures; // from list.txt
     uint64_t camera_count, point_count;
     // Index of each camera into the model's images; -1: not registered.
@@ -113,11 +108,11 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
     struct orl_known_camera camera = {.path = b->pictures.items[index],
                                       .gap = {.size = true, .centre = true}};
     char place[64];
-    enum orl_result result = next_numbers(&b->l, f_k, 3, "a camera needs f k1 k2");
-    snprintf(place, sizeof place, "line %zu: camera %zu", b->l.number, index);
+    enum orl_result result = next_numbers(b->l, f_k, 3, "a camera needs f k1 k2");
+    snprintf(place, sizeof place, "line %zu: camera %zu", b->l->number, index);
     for (int i = 0; result == ORL_OK && i < 3; i++)
-        result = next_numbers(&b->l, r[i], 3, "a row of R needs 3 numbers");
-    ORL_THEN(result, next_numbers(&b->l, t, 3, "t needs 3 numbers"));
+        result = next_numbers(b->l, r[i], 3, "a row of R needs 3 numbers");
+    ORL_THEN(result, next_numbers(b->l, t, 3, "t needs 3 numbers"));
     b->image_of[index] = -1;
     if (result != ORL_OK || f_k[0] == 0) // not registered
         return result;
@@ -134,7 +129,7 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
     camera.params[3] = f_k[1];
     camera.params[4] = f_k[2];
     b->image_of[index] = (int64_t)known->model.image_count;
-    return orl_known_add(b->l.log, b->l.path, place, &camera, known);
+    return orl_known_add(b->l->log, b->l->path, place, &camera, known);
 }
 
 enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
@@ -160,17 +155,17 @@ static enum orl_result read_point(struct bundler *b, struct orl_colmap_model *mo
 {
     double at[3], rgb[3];
     size_t before = model->point_count;
-    ORL_TRY(next_numbers(&b->l, at, 3, "a point's position needs 3 numbers"));
-    ORL_TRY(next_numbers(&b->l, rgb, 3, "a point's colour needs 3 numbers"));
-    ORL_TRY(orl_known_add_point(b->l.log, at, rgb, model));
-    if (!orl_text_next(&b->l))
-        return orl_text_bad(&b->l, "a point needs the list of its views");
-    return orl_known_read_views(&b->l, b->camera_count, b->image_of, before, model);
+    ORL_TRY(next_numbers(b->l, at, 3, "a point's position needs 3 numbers"));
+    ORL_TRY(next_numbers(b->l, rgb, 3, "a point's colour needs 3 numbers"));
+    ORL_TRY(orl_known_add_point(b->l->log, at, rgb, model));
+    if (!orl_text_next(b->l))
+        return orl_text_bad(b->l, "a point needs the list of its views");
+    return orl_known_read_views(b->l, b->camera_count, b->image_of, before, model);
 }
 
 static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *known)
 {
-    struct orl_text_lines *l = &b->l;
+    struct orl_text_lines *l = b->l;
     struct orl_colmap_model *model = &known->model;
     size_t left = (size_t)(l->end - l->next);
     if (!orl_text_next(l) || !orl_text_id(l, 1000000, &b->camera_count) ||
@@ -196,11 +191,9 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
 enum orl_result orl_known_read_bundler(const struct orl_known_source *source,
                                        struct orl_known_cameras *known)
 {
-    struct bundler b = {0};
-    enum orl_result result = orl_text_open(source->log, source->path, &b.l);
-    ORL_THEN(result, read_list(source->log, known->folder, &b.pictures));
+    struct bundler b = {.l = source->lines};
+    enum orl_result result = read_list(source->log, known->folder, &b.pictures);
     ORL_THEN(result, read_bundle(&b, known));
-    orl_text_close(&b.l);
     orl_names_finish(&b.pictures);
     free(b.image_of);
     return result;

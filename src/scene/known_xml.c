@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
 #include "core/memory.h"
 #include "scene/known_internal.h"
 
@@ -282,7 +281,7 @@ static enum orl_result add_cameras(const struct reader *r, struct orl_known_came
     return ORL_OK;
 }
 
-static enum orl_result parse(struct reader *r, const uint8_t *data, size_t size)
+static enum orl_result parse(struct reader *r)
 {
     const struct orl_log *log = r->source->log;
     XML_Parser parser = XML_ParserCreate(NULL);
@@ -291,7 +290,7 @@ static enum orl_result parse(struct reader *r, const uint8_t *data, size_t size)
     XML_SetUserData(parser, r);
     XML_SetElementHandler(parser, begin, end);
     XML_SetCharacterDataHandler(parser, take_text);
-    if (XML_Parse(parser, (const char *)data, (int)size, 1) != XML_STATUS_OK && r->result == ORL_OK)
+    if (XML_Parse(parser, (const char *)r->source->data, (int)r->source->size, 1) != XML_STATUS_OK && r->result == ORL_OK)
         r->result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %llu (byte %lld): %s", r->source->path,
                              (unsigned long long)XML_GetCurrentLineNumber64(parser),
                              (long long)XML_GetCurrentByteIndex64(parser),
@@ -304,10 +303,7 @@ enum orl_result orl_known_read_metashape(const struct orl_known_source *source,
                                          struct orl_known_cameras *known)
 {
     struct reader r = {.source = source, .chunk = {.r = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .scale = 1}};
-    uint8_t *data = NULL;
-    size_t size;
-    enum orl_result result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &size);
-    ORL_THEN(result, parse(&r, data, size));
+    enum orl_result result = parse(&r);
     if (result == ORL_OK && !r.chunks)
         result = orl_fail(source->log, ORL_ERR_FORMAT, "%s: not Metashape's cameras: no <chunk>", source->path);
     ORL_THEN(result, add_cameras(&r, known));
@@ -316,6 +312,5 @@ enum orl_result orl_known_read_metashape(const struct orl_known_source *source,
     free(r.cameras);
     free(r.sensors);
     free(r.components);
-    free(data);
     return result;
 }
