@@ -293,8 +293,7 @@ enum orl_result orl_lod_write(const struct orl_log *log, const struct orl_progre
                               const struct orl_lod_params *params, const char *ply,
                               const char *path)
 {
-    struct writer w = {.log = log, .progress = progress, .params = params, .path = path,
-                       .parts = {.fd = -1}};
+    struct writer w = {.log = log, .progress = progress, .params = params, .path = path};
     enum orl_result result = begin(&w);
     if (result == ORL_OK && (result = check_disk(&w, ply)) == ORL_OK &&
         (result = orl_point_parts_make(log, progress, ply, path, params->max_bytes,

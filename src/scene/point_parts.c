@@ -1,13 +1,9 @@
 #include "scene/point_parts.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "core/file.h"
 #include "core/memory.h"
 #include "scene/point_stream.h"
 
@@ -236,21 +232,17 @@ static enum orl_result lay_out(struct maker *m)
 
 // --- the file ---
 
+// Goes to record `index` of a run.
+static bool seek(const struct point_parts *parts, const struct run *run, uint64_t index)
+{
+    return fseeko(parts->file.stream, (off_t)((run->first + index) * sizeof(struct record)), SEEK_SET) == 0;
+}
+
 static enum orl_result write_buffer(const struct point_parts *parts, struct run *run)
 {
-    const uint8_t *from = (const uint8_t *)run->buffer;
-    size_t left = run->buffered * sizeof *run->buffer;
-    off_t at = (off_t)((run->first + run->written) * sizeof *run->buffer);
-    while (left) {
-        ssize_t put = pwrite(parts->fd, from, left, at);
-        if (put < 0 && errno == EINTR)
-            continue;
-        if (put < 0)
-            return orl_file_failed(parts->log, parts->path);
-        from += put;
-        at += put;
-        left -= (size_t)put;
-    }
+    if (!seek(parts, run, run->written) ||
+        fwrite(run->buffer, sizeof *run->buffer, run->buffered, parts->file.stream) != run->buffered)
+        return orl_file_failed(parts->log, parts->path);
     run->written += run->buffered;
     run->buffered = 0;
     return ORL_OK;
@@ -301,30 +293,19 @@ static enum orl_result flush(const struct point_parts *parts)
     return result;
 }
 
-// A file without a name, beside the path: it is gone when it is closed.
-static enum orl_result open_file(struct point_parts *parts)
-{
-    struct orl_atomic_file file = {0};
-    enum orl_result result = orl_atomic_begin(parts->log, parts->path, &file);
-    if (result == ORL_OK && (parts->fd = fcntl(file.fd, F_DUPFD_CLOEXEC, 0)) < 0)
-        result = orl_file_failed(parts->log, parts->path);
-    orl_atomic_abort(&file);
-    return result;
-}
-
 enum orl_result orl_point_parts_make(const struct orl_log *log, const struct orl_progress *progress,
                                      const char *ply, const char *path, size_t max_bytes,
                                      struct point_parts *parts)
 {
     struct maker m = {.progress = progress, .parts = parts, .max_bytes = max_bytes};
-    *parts = (struct point_parts){.log = log, .path = path, .flat = true, .fd = -1};
+    *parts = (struct point_parts){.log = log, .path = path, .flat = true};
     m.counts = orl_array(log, CELLS, sizeof *m.counts);
     m.part_of = orl_array(log, CELLS, sizeof *m.part_of);
     m.border = orl_array(log, CELLS, sizeof *m.border);
     enum orl_result result = m.counts && m.part_of && m.border ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, orl_point_stream_open(log, ply, &m.stream, &m.records));
     ORL_THEN(result, orl_points_init(log, &m.read, READ_POINTS));
-    if (result == ORL_OK && (result = open_file(parts)) == ORL_OK &&
+    if (result == ORL_OK && (result = orl_atomic_open(log, path, &parts->file)) == ORL_OK &&
         (result = find_cube(&m)) == ORL_OK &&
         (result = for_all(&m, "count", count_cells)) == ORL_OK &&
         (result = assign_cells(&m)) == ORL_OK && (result = lay_out(&m)) == ORL_OK &&
@@ -349,9 +330,7 @@ void orl_point_parts_finish(struct point_parts *parts)
     free(parts->parts);
     parts->parts = NULL;
     parts->count = 0;
-    if (parts->fd >= 0)
-        close(parts->fd);
-    parts->fd = -1;
+    orl_atomic_abort(&parts->file);
 }
 
 double orl_point_parts_bytes(double points)
@@ -372,15 +351,8 @@ static enum orl_result read_run(const struct point_parts *parts, const struct ru
 {
     for (uint64_t at = 0; at < run->count;) {
         uint64_t here = run->count - at < BUFFER_RECORDS ? run->count - at : BUFFER_RECORDS;
-        size_t bytes = (size_t)here * sizeof(struct record);
-        ssize_t got = pread(parts->fd, run->buffer, bytes,
-                            (off_t)((run->first + at) * sizeof(struct record)));
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got != (ssize_t)bytes)
-            return got < 0 ? orl_file_failed(parts->log, parts->path)
-                           : orl_fail(parts->log, ORL_ERR_IO, "%s: cannot read its parts back",
-                                      parts->path);
+        if (!seek(parts, run, at) || fread(run->buffer, sizeof *run->buffer, here, parts->file.stream) != here)
+            return orl_fail(parts->log, ORL_ERR_IO, "%s: cannot read its parts back", parts->path);
         for (size_t i = 0; i < here; i++, points->count++) {
             const struct record *r = &run->buffer[i];
             memcpy(points->position[points->count], r->position, sizeof r->position);

@@ -3,6 +3,7 @@
 #ifndef ORL_SCENE_POINT_PARTS_H
 #define ORL_SCENE_POINT_PARTS_H
 
+#include "core/file.h"
 #include "oriel/progress.h"
 #include "scene/point_blocks.h"
 
@@ -10,13 +11,13 @@ struct point_part;
 
 struct point_parts {
     const struct orl_log *log;
-    const char *path;       // of what is made of them; the parts lie in a file beside it
+    const char *path;       // of what is made of them
     struct point_cube cube; // around all points
     struct point_part *parts;
     size_t count;
     uint64_t total;         // points of all parts
     bool flat;              // no point has a radius
-    int fd;                 // of the file, which has no name
+    struct orl_atomic_file file; // beside `path`, with the parts; never takes its final name
 };
 
 // Reads the binary PLY twice and writes the parts, each of as many points as fit in `max_bytes`.
