@@ -1,6 +1,5 @@
 #include "preprocess/job/exposure_list.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,30 +7,9 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "core/text.h"
+#include "scene/text_lines.h"
 
-enum { LIST_MAX_BYTES = 16 << 20, FIELDS_MAX = 4 };
-
-// Splits a line at commas, in place, and trims spaces. Counts at most FIELDS_MAX + 1 fields.
-static int split(char *line, char *fields[FIELDS_MAX])
-{
-    int count = 0;
-    for (char *at = line; at;) {
-        char *comma = strchr(at, ',');
-        if (comma)
-            *comma = '\0';
-        while (isspace((unsigned char)*at))
-            at++;
-        size_t length = strlen(at);
-        while (length && isspace((unsigned char)at[length - 1]))
-            at[--length] = '\0';
-        if (count < FIELDS_MAX)
-            fields[count] = at;
-        count++;
-        at = comma ? comma + 1 : NULL;
-    }
-    return count;
-}
+enum { FIELDS_MAX = 5 }; // one more than there may be
 
 // Reads numbers such as "0.004", "1/250" and "f/8".
 static bool read_number(const char *text, double *value)
@@ -52,7 +30,7 @@ static bool read_number(const char *text, double *value)
     return *end == '\0' && isfinite(*value);
 }
 
-static bool read_line(char *fields[FIELDS_MAX], int count, struct orl_listed_exposure *entry)
+static bool read_line(char *fields[FIELDS_MAX], size_t count, struct orl_listed_exposure *entry)
 {
     double time, aperture, iso;
     entry->absolute = count == 4;
@@ -66,30 +44,24 @@ static bool read_line(char *fields[FIELDS_MAX], int count, struct orl_listed_exp
 }
 
 // A line of titles has digits in its first field at most; a mistyped number has others.
-static bool is_title(char *fields[FIELDS_MAX], int count)
+static bool is_title(char *fields[FIELDS_MAX], size_t count)
 {
     bool digits = strchr(fields[0], '.') != NULL; // the first field is a file name
-    for (int i = 1; i < count && i < FIELDS_MAX; i++)
+    for (size_t i = 1; i < count; i++)
         digits = digits || strpbrk(fields[i], "0123456789");
     return count > 1 && !digits;
 }
 
-static enum orl_result add_line(const struct orl_log *log, const char *path, int number,
-                                char *line, size_t *capacity, struct orl_exposure_list *list)
+static enum orl_result add_line(struct orl_text_lines *l, size_t *capacity, struct orl_exposure_list *list)
 {
-    char *fields[FIELDS_MAX] = {line};
-    int count = split(line, fields);
+    char *fields[FIELDS_MAX];
+    size_t count = orl_text_split(l, ',', fields, FIELDS_MAX);
     struct orl_listed_exposure entry = {0};
-    if (!*fields[0] && count == 1)
-        return ORL_OK;
     if (!read_line(fields, count, &entry))
-        return number == 1 && is_title(fields, count)
-                   ? ORL_OK
-                   : orl_fail(log, ORL_ERR_FORMAT,
-                              "%s: line %d: neither NAME,TIME,APERTURE,ISO nor NAME,EV", path,
-                              number);
-    ORL_TRY(ORL_GROW(log, list->items, *capacity, list->count));
-    entry.name = orl_strdup(log, fields[0]);
+        return l->number == 1 && is_title(fields, count)
+                   ? ORL_OK : orl_text_bad(l, "neither NAME,TIME,APERTURE,ISO nor NAME,EV");
+    ORL_TRY(ORL_GROW(l->log, list->items, *capacity, list->count));
+    entry.name = orl_strdup(l->log, fields[0]);
     ORL_TRY_MEMORY(entry.name);
     list->items[list->count++] = entry;
     return ORL_OK;
@@ -99,19 +71,12 @@ enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *pa
                                        struct orl_exposure_list *list)
 {
     memset(list, 0, sizeof *list);
-    uint8_t *data = NULL;
-    size_t size, capacity = 0;
-    enum orl_result result = orl_file_read(log, path, LIST_MAX_BYTES, &data, &size);
-    int number = 1;
-    // Spreadsheet programs write a byte order mark.
-    size_t mark = result == ORL_OK ? orl_utf8_mark_length(data, size) : 0;
-    for (char *line = data ? (char *)data + mark : NULL; result == ORL_OK && line; number++) {
-        char *end = strchr(line, '\n');
-        if (end)
-            *end = '\0';
-        result = add_line(log, path, number, line, &capacity, list);
-        line = end ? end + 1 : NULL;
-    }
+    struct orl_text_lines l;
+    size_t capacity = 0;
+    enum orl_result result = orl_text_open(log, path, &l);
+    while (result == ORL_OK && orl_text_next(&l))
+        result = add_line(&l, &capacity, list);
+    orl_text_close(&l);
     if (result == ORL_OK && !list->count)
         result = orl_fail(log, ORL_ERR_FORMAT, "%s: no exposure in it", path);
     for (size_t i = 1; result == ORL_OK && i < list->count; i++)
@@ -120,7 +85,6 @@ enum orl_result orl_exposure_list_read(const struct orl_log *log, const char *pa
                               "%s: %s has an exposure of another kind than %s: all must be "
                               "NAME,EV or all NAME,TIME,APERTURE,ISO", path,
                               list->items[i].name, list->items[0].name);
-    free(data);
     if (result != ORL_OK)
         orl_exposure_list_finish(list);
     return result;

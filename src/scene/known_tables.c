@@ -103,29 +103,6 @@ static const char *const columns[COLUMNS] = {"#name", "x", "y", "alt", "heading"
                                              "px", "py", "k1", "k2", "k3", "k4", "t1", "t2"};
 enum { FIELDS_MAX = 64 };
 
-// Cuts a line at its separators; quotes around a field are left out. Number of fields.
-static size_t split(char *line, char separator, char *fields[FIELDS_MAX])
-{
-    const char ends[2] = {separator, '\0'};
-    size_t count = 0;
-    char *at = line, *stop;
-    for (; count < FIELDS_MAX; at = stop + 1) {
-        at += strspn(at, " \t");
-        bool quoted = *at == '"';
-        fields[count++] = at += quoted;
-        stop = quoted ? at + strcspn(at, "\"") : at + strcspn(at, ends);
-        char *end = stop;
-        stop += strcspn(stop, ends);
-        bool last = !*stop;
-        while (end > at && strchr(" \t", end[-1]))
-            end--;
-        *end = '\0';
-        if (last)
-            break;
-    }
-    return count;
-}
-
 // The columns of a file, and what separates them: where that is a semicolon, numbers have commas.
 struct heads {
     int at[COLUMNS]; // -1: there is none
@@ -162,7 +139,7 @@ static enum orl_result read_row(struct orl_text_lines *l, const struct heads *he
     char *fields[FIELDS_MAX], place[64];
     double value[COLUMNS] = {0};
     const int *at = heads->at;
-    size_t count = split(l->at, heads->separator, fields);
+    size_t count = orl_text_split(l, heads->separator, fields, FIELDS_MAX);
     snprintf(place, sizeof place, "line %zu", l->number);
     for (int c = X; c < COLUMNS; c++) {
         if (at[c] < 0)
@@ -194,7 +171,7 @@ static enum orl_result read_heads(struct orl_text_lines *l, struct heads *heads)
     }
     int *at = heads->at;
     heads->separator = strchr(l->at, ';') ? ';' : ',';
-    size_t count = split(l->at, heads->separator, fields);
+    size_t count = orl_text_split(l, heads->separator, fields, FIELDS_MAX);
     for (int c = 0; c < COLUMNS; c++) {
         at[c] = -1;
         for (size_t i = 0; i < count && at[c] < 0; i++)

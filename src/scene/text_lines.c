@@ -106,3 +106,25 @@ bool orl_text_numbers(struct orl_text_lines *l, double *values, size_t count)
             return false;
     return true;
 }
+
+size_t orl_text_split(struct orl_text_lines *l, char separator, char **fields, size_t most)
+{
+    const char ends[2] = {separator, '\0'};
+    size_t count = 0;
+    char *at = l->at, *stop;
+    for (; count < most; at = stop + 1) {
+        at += strspn(at, " \t");
+        bool quoted = *at == '"';
+        fields[count++] = at += quoted;
+        stop = quoted ? at + strcspn(at, "\"") : at + strcspn(at, ends);
+        char *end = stop;
+        stop += strcspn(stop, ends);
+        bool last = !*stop;
+        while (end > at && strchr(" \t", end[-1]))
+            end--;
+        *end = '\0';
+        if (last)
+            break;
+    }
+    return count;
+}

@@ -32,5 +32,8 @@ bool orl_text_next(struct orl_text_lines *l);
 bool orl_text_number(struct orl_text_lines *l, double *value);
 bool orl_text_numbers(struct orl_text_lines *l, double *values, size_t count);
 bool orl_text_id(struct orl_text_lines *l, uint64_t max, uint64_t *value);
+// Cuts the current line at its separators into `most` fields or fewer, without spaces and quotes around
+// them. How many.
+size_t orl_text_split(struct orl_text_lines *l, char separator, char **fields, size_t most);
 
 #endif
