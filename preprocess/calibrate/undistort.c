@@ -46,51 +46,26 @@ static enum orl_result limit_cameras(const struct orl_job *job)
     return result;
 }
 
-// COLMAP does not notice when a picture cannot be written, so each is read again.
-static enum orl_result check_photo(const struct orl_job *job,
-                                   const struct orl_colmap_model *model,
-                                   const struct orl_colmap_image *image)
-{
-    const struct orl_camera *camera =
-        &orl_colmap_camera_by_id(model, image->camera_id)->pinhole;
-    struct orl_image picture = {0};
-    const char *path = ORL_PATH(job->dir, WORK "/images/%s", image->name);
-    enum orl_result result = orl_picture_read(job->log, path, 1, &picture);
-    if (result == ORL_OK && (picture.width != camera->width || picture.height != camera->height))
-        result = orl_fail(job->log, ORL_ERR_EXTERNAL, "%s: %dx%d pixels, but COLMAP's camera has "
-                          "%dx%d", path, picture.width, picture.height, camera->width,
-                          camera->height);
-    else if (result != ORL_OK && result != ORL_ERR_MEMORY)
-        result = orl_fail(job->log, ORL_ERR_IO, "%s: COLMAP did not write it whole", path);
-    orl_image_finish(&picture);
-    return result;
-}
-
-static enum orl_result check_output(const struct orl_job *job,
-                                    const struct orl_colmap_model *model, json_t *record)
+// Of COLMAP's output the cameras count: Oriel makes the pictures itself.
+static enum orl_result check_cameras(const struct orl_job *job,
+                                     const struct orl_colmap_model *model, json_t *record)
 {
     int width = 0, height = 0;
     size_t test = 0;
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
-        result = check_photo(job, model, &model->images[i]);
+    for (size_t i = 0; i < model->image_count; i++)
         test += orl_job_find(job, model->images[i].name)->test;
-    }
     for (size_t i = 0; i < model->camera_count; i++) {
         const struct orl_camera *camera = &model->cameras[i].pinhole;
         if (camera->width > width)
             width = camera->width, height = camera->height;
     }
-    if (result == ORL_OK && model->image_count < test + 2)
-        result = orl_fail(job->log, ORL_ERR_DATA,
-                          "of the photographs that are not held out only %zu could be placed; "
-                          "two are needed", model->image_count - test);
+    if (model->image_count < test + 2)
+        return orl_fail(job->log, ORL_ERR_DATA,
+                        "of the photographs that are not held out only %zu could be placed; two are needed",
+                        model->image_count - test);
     orl_progress_report(job->progress, "undistort", 1, 1, NULL);
-    if (result == ORL_OK)
-        json_object_set_new(record, "largest", json_pack("[i, i]", width, height));
-    else
-        orl_job_hint_disk(job);
-    return result;
+    json_object_set_new(record, "largest", json_pack("[i, i]", width, height));
+    return ORL_OK;
 }
 
 // Moves what was made of some photographs to SCENE/`name`; of none: what was there goes.
@@ -108,7 +83,7 @@ enum orl_result orl_stage_undistort(struct orl_job *job, json_t *record)
     ORL_TRY(run_undistorter(job));
     ORL_TRY(limit_cameras(job));
     ORL_TRY(orl_job_set_sparse(job, WORK "/sparse", &model));
-    ORL_TRY(check_output(job, model, record));
+    ORL_TRY(check_cameras(job, model, record));
     ORL_TRY(orl_undistort_companions(job, ORL_COMPANION_PHOTO, model, WORK "/images", &photos));
     ORL_TRY(orl_undistort_companions(job, ORL_COMPANION_LINEAR, model, WORK "/linear", &linear));
     ORL_TRY(orl_undistort_companions(job, ORL_COMPANION_MASK, model, WORK "/masks", &masks));
