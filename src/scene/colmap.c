@@ -67,47 +67,6 @@ const char *orl_colmap_name_problem(const char *name)
     return NULL;
 }
 
-static int compare_points(const void *a, const void *b)
-{
-    uint64_t x = ((const struct orl_colmap_point *)a)->id;
-    uint64_t y = ((const struct orl_colmap_point *)b)->id;
-    return (x > y) - (x < y);
-}
-
-int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id)
-{
-    struct orl_colmap_point key = {.id = id};
-    const struct orl_colmap_point *found =
-        model->point_count ? bsearch(&key, model->points, model->point_count,
-                                     sizeof *model->points, compare_points)
-                           : NULL;
-    return found ? found - model->points : -1;
-}
-
-enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
-                                        struct orl_colmap_model *model)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < model->point_count; i++) {
-        const double *p = model->points[i].position;
-        if (fabs(p[0]) <= ORL_WORLD_MAX && fabs(p[1]) <= ORL_WORLD_MAX &&
-            fabs(p[2]) <= ORL_WORLD_MAX)
-            model->points[kept++] = model->points[i];
-    }
-    if (kept < model->point_count)
-        orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite or absurdly far: "
-                 "dropped", path,
-                 model->point_count - kept, model->point_count);
-    model->point_count = kept;
-    if (kept)
-        qsort(model->points, kept, sizeof *model->points, compare_points);
-    for (size_t i = 1; i < kept; i++)
-        if (model->points[i].id == model->points[i - 1].id)
-            return orl_fail(log, ORL_ERR_FORMAT, "%s: two points have the id %llu", path,
-                            (unsigned long long)model->points[i].id);
-    return ORL_OK;
-}
-
 static int compare_cameras(const void *a, const void *b)
 {
     uint32_t x = ((const struct orl_colmap_camera *)a)->id;
@@ -150,27 +109,6 @@ enum orl_result orl_colmap_check(const struct orl_log *log, const char *dir,
                             image->name);
     }
     return ORL_OK;
-}
-
-bool orl_colmap_has(const char *dir, const char *name)
-{
-    return orl_path_is_file(ORL_PATH(dir, "%s", name));
-}
-
-enum orl_result orl_colmap_read(const struct orl_log *log, const char *dir,
-                                struct orl_colmap_model *model)
-{
-    memset(model, 0, sizeof *model);
-    bool binary = orl_colmap_has(dir, "cameras.bin");
-    if (!binary && !orl_colmap_has(dir, "cameras.txt"))
-        return orl_fail(log, ORL_ERR_NOT_FOUND,
-                        "%s: no COLMAP model here (neither cameras.bin nor cameras.txt)", dir);
-    enum orl_result result = binary ? orl_colmap_read_binary(log, dir, model)
-                                    : orl_colmap_read_text(log, dir, model);
-    ORL_THEN(result, orl_colmap_check(log, dir, model));
-    if (result != ORL_OK)
-        orl_colmap_finish(model);
-    return result;
 }
 
 void orl_colmap_finish(struct orl_colmap_model *model)

@@ -1,4 +1,4 @@
-// Shared by the readers of COLMAP's binary and text models.
+// Shared by the readers and writers of COLMAP's models.
 #ifndef ORL_SCENE_COLMAP_INTERNAL_H
 #define ORL_SCENE_COLMAP_INTERNAL_H
 
@@ -26,12 +26,6 @@ const char *orl_colmap_camera_set(struct orl_colmap_camera *camera, uint64_t wid
 // The problem with a picture's name in words, or NULL. Names are joined to a folder and
 // must not lead out of it.
 const char *orl_colmap_name_problem(const char *name);
-// Index of the point of this id; -1 when it was dropped or is missing. Points
-// must be sorted by id.
-int64_t orl_colmap_point_index(const struct orl_colmap_model *model, uint64_t id);
-// After points3D has been read: drops points that are not finite and sorts by id.
-enum orl_result orl_colmap_clean_points(const struct orl_log *log, const char *path,
-                                        struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
 // Sorts images by name and checks that ids and names are unique and that cameras exist. `file` is
 // for messages.
@@ -40,12 +34,5 @@ enum orl_result orl_colmap_check(const struct orl_log *log, const char *file,
 // Sorts cameras by id for look-up and checks that ids are unique.
 enum orl_result orl_colmap_sort_cameras(const struct orl_log *log, const char *path,
                                         struct orl_colmap_model *model) ORL_CHECK_RESULT;
-
-// Read all three files, points before images, since images refer to points. A model without the file
-// of points has none.
-enum orl_result orl_colmap_read_binary(const struct orl_log *log, const char *dir,
-                                       struct orl_colmap_model *model) ORL_CHECK_RESULT;
-enum orl_result orl_colmap_read_text(const struct orl_log *log, const char *dir,
-                                     struct orl_colmap_model *model) ORL_CHECK_RESULT;
 
 #endif
