@@ -12,10 +12,12 @@ void orl_sift_widen(const uint8_t *from, size_t count, int16_t *to)
         to[k] = from[k];
 }
 
-// Dot products of `rows` rows of `a`, up to ROWS, with a tile of `b`.
-static inline __attribute__((always_inline)) void multiply(const int16_t *a, size_t rows,
-                                                           const int16_t *b, size_t b_count,
-                                                           int32_t dots[ROWS][TILE])
+// Dot products of `rows` rows of `a`, up to ROWS, with a tile of `b`. Every x86-64 processor has SSE2; most
+// have AVX2, which is twice as wide. ThreadSanitizer begins after functions have been chosen.
+#if defined __x86_64__ && !defined __SANITIZE_THREAD__
+__attribute__((target_clones("default", "avx2")))
+#endif
+static void multiply(const int16_t *a, size_t rows, const int16_t *b, size_t b_count, int32_t dots[ROWS][TILE])
 {
     for (size_t j = 0; j < b_count; j++) {
         for (size_t i = 0; i < rows; i++) {
@@ -25,34 +27,6 @@ static inline __attribute__((always_inline)) void multiply(const int16_t *a, siz
             dots[i][j] = sum;
         }
     }
-}
-
-static void multiply_plain(const int16_t *a, size_t rows, const int16_t *b, size_t b_count,
-                           int32_t dots[ROWS][TILE])
-{
-    multiply(a, rows, b, b_count, dots);
-}
-
-#ifdef __x86_64__
-// Every x86-64 processor has SSE2; most have AVX2, which is twice as wide.
-__attribute__((target("avx2"))) static void multiply_avx2(const int16_t *a, size_t rows,
-                                                          const int16_t *b, size_t b_count,
-                                                          int32_t dots[ROWS][TILE])
-{
-    multiply(a, rows, b, b_count, dots);
-}
-#endif
-
-typedef void (*multiply_fn)(const int16_t *a, size_t rows, const int16_t *b, size_t b_count,
-                            int32_t dots[ROWS][TILE]);
-
-static multiply_fn choose_multiply(void)
-{
-#ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2"))
-        return multiply_avx2;
-#endif
-    return multiply_plain;
 }
 
 static inline void consider(struct orl_nearest *nearest, int32_t value, size_t index)
@@ -66,7 +40,6 @@ static inline void consider(struct orl_nearest *nearest, int32_t value, size_t i
 void orl_sift_nearest(const int16_t *a, size_t a_count, const int16_t *b, size_t b_count,
                       struct orl_nearest *of_a, struct orl_nearest *of_b)
 {
-    multiply_fn run = choose_multiply();
     int32_t dots[ROWS][TILE];
     for (size_t i = 0; i < a_count; i++)
         of_a[i] = (struct orl_nearest){-1, -1, 0};
@@ -77,7 +50,7 @@ void orl_sift_nearest(const int16_t *a, size_t a_count, const int16_t *b, size_t
         size_t width = b_count - tile < TILE ? b_count - tile : TILE;
         for (size_t row = 0; row < a_count; row += ROWS) {
             size_t rows = a_count - row < ROWS ? a_count - row : ROWS;
-            run(a + row * SIZE, rows, b + tile * SIZE, width, dots);
+            multiply(a + row * SIZE, rows, b + tile * SIZE, width, dots);
             for (size_t i = 0; i < rows; i++) {
                 for (size_t j = 0; j < width; j++) {
                     consider(&of_a[row + i], dots[i][j], tile + j);
