@@ -324,20 +324,13 @@ static enum orl_result invalidate(const struct orl_job *job, const bool *current
     return result == ORL_OK ? orl_job_save_stages(job) : result;
 }
 
-static double cpu_seconds(const struct rusage *usage)
-{
-    return (double)(usage->ru_utime.tv_sec + usage->ru_stime.tv_sec) +
-           1e-6 * (double)(usage->ru_utime.tv_usec + usage->ru_stime.tv_usec);
-}
-
-static void add_usage(const struct orl_job *job, double start_s, const struct rusage *before,
-                      json_t *record)
+// `start_s`, `start_cpu_s`: of the stage.
+static void add_usage(const struct orl_job *job, double start_s, double start_cpu_s, json_t *record)
 {
     struct rusage after;
     getrusage(RUSAGE_SELF, &after);
     json_object_set_new(record, "wall_s", json_real(orl_time_s() - start_s));
-    json_object_set_new(record, "cpu_s", json_real(cpu_seconds(&after) - cpu_seconds(before) +
-                                                   job->child_cpu_s));
+    json_object_set_new(record, "cpu_s", json_real(orl_cpu_time_s() - start_cpu_s + job->child_cpu_s));
     // ru_maxrss is Oriel's peak since its start; child processes are new.
     json_object_set_new(record, "peak_rss_mib", json_real((double)after.ru_maxrss / 1024));
     json_object_set_new(record, "child_peak_rss_mib",
@@ -377,10 +370,8 @@ static double disk_need(const struct orl_job *job, enum orl_stage_id id)
 
 static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json_t *record)
 {
-    struct rusage before;
     json_t *files = json_object();
-    double start = orl_time_s();
-    getrusage(RUSAGE_SELF, &before);
+    double start = orl_time_s(), start_cpu = orl_cpu_time_s();
     job->child_cpu_s = 0;
     json_decref(job->programs);
     job->programs = json_object();
@@ -393,7 +384,7 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     if (json_object_size(files))
         json_object_set(record, "files", files);
     json_decref(files);
-    add_usage(job, start, &before, record);
+    add_usage(job, start, start_cpu, record);
     return result;
 }
 

@@ -197,14 +197,7 @@ enum orl_result orl_job_link(const struct orl_job *job, const char *target, cons
     if (symlink(target, path) == 0)
         return ORL_OK;
     bool unknown = errno == EPERM || errno == ENOTSUP || errno == ENOSYS || errno == EINVAL;
-    if (!unknown)
-        return orl_file_failed(job->log, path);
-    uint8_t *data;
-    size_t size;
-    enum orl_result result = orl_file_read(job->log, target, SIZE_MAX / 2, &data, &size);
-    ORL_THEN(result, orl_file_write(job->log, path, data, size));
-    free(data);
-    return result;
+    return unknown ? orl_file_copy(job->log, target, path) : orl_file_failed(job->log, path);
 }
 
 enum orl_result orl_job_save_stages(const struct orl_job *job)
