@@ -189,7 +189,8 @@ enum orl_result orl_stage_mesh(struct orl_job *job, json_t *record) ORL_CHECK_RE
 enum orl_result orl_stage_expose(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 // Renders some training photographs, each from the others, and sets in `record` what brings them closer: "tuned", the
 // settings of the scene's method as orl_search_record has them, and "backdrop" (orl_manifest_backdrop). Held-out
-// photographs take no part. Without a device, or with fewer than five photographs, "tuned" is empty and the backdrop moves.
+// photographs take no part. Without a device, or with fewer than five photographs, "tuned" is empty and the backdrop
+// moves.
 enum orl_result orl_stage_tune(struct orl_job *job, json_t *record) ORL_CHECK_RESULT;
 // Writes SCENE/occluders/NAME.png of each training photograph that shows any, and sets "occluded" in
 // `record`: the share of the picture by name. Without a device, or with too few photographs, none

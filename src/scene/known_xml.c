@@ -283,15 +283,17 @@ static enum orl_result add_cameras(const struct reader *r, struct orl_known_came
 
 static enum orl_result parse(struct reader *r)
 {
-    const struct orl_log *log = r->source->log;
+    const struct orl_known_source *source = r->source;
+    const struct orl_log *log = source->log;
     XML_Parser parser = XML_ParserCreate(NULL);
     if (!parser)
-        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its XML", r->source->path);
+        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its XML", source->path);
     XML_SetUserData(parser, r);
     XML_SetElementHandler(parser, begin, end);
     XML_SetCharacterDataHandler(parser, take_text);
-    if (XML_Parse(parser, (const char *)r->source->data, (int)r->source->size, 1) != XML_STATUS_OK && r->result == ORL_OK)
-        r->result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %llu (byte %lld): %s", r->source->path,
+    if (XML_Parse(parser, (const char *)source->data, (int)source->size, 1) != XML_STATUS_OK &&
+        r->result == ORL_OK)
+        r->result = orl_fail(log, ORL_ERR_FORMAT, "%s: line %llu (byte %lld): %s", source->path,
                              (unsigned long long)XML_GetCurrentLineNumber64(parser),
                              (long long)XML_GetCurrentByteIndex64(parser),
                              XML_ErrorString(XML_GetErrorCode(parser)));
