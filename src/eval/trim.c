@@ -1,11 +1,12 @@
 // oriel trim: the whole scene is measured, the search makes it smaller, and the result is written.
 #include "eval/trim.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/new_dir.h"
 #include "core/process.h"
@@ -18,13 +19,14 @@ enum { DECIDING_MAX = 48 }; // targets that decide on a step; all confirm the wh
 static const double tuned_gain = 0.1;
 // Share of the time that tuning may take.
 static const double tuned_time = 0.2;
+
 // --- the held-out photographs ---
 
 static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *renderer,
                                     const struct orl_render_params *render,
                                     struct orl_trim_figures *figures)
 {
-    const struct orl_scene *scene = s->source.scene;
+    const struct orl_scene *scene = s->scene;
     size_t held = orl_heldout_count(scene);
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
@@ -32,8 +34,8 @@ static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *
         double psnr_db = 0, ssim = 0;
         if (!scene->photos[i].test)
             continue;
-        result = orl_heldout_load(s->source.log, scene, i, s->params->size_divide, &view);
-        ORL_THEN(result, orl_heldout_compare(s->source.log, renderer, scene, &view, render, NULL, &psnr_db,
+        result = orl_heldout_load(s->log, scene, i, s->params->size_divide, &view);
+        ORL_THEN(result, orl_heldout_compare(s->log, renderer, scene, &view, render, NULL, &psnr_db,
                                              &ssim));
         figures->held_psnr_db += psnr_db / (double)held;
         figures->held_ssim += ssim / (double)held;
@@ -50,13 +52,13 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
 {
     struct orl_scene *scene = NULL;
     struct orl_renderer *renderer = NULL;
-    enum orl_result result = orl_scene_open(s->source.log, dir, &scene);
-    ORL_THEN(result, orl_renderer_create(s->source.gpu, scene, NULL, &renderer));
+    enum orl_result result = orl_scene_open(s->log, dir, &scene);
+    ORL_THEN(result, orl_renderer_create(s->gpu, scene, NULL, &renderer));
     ORL_THEN(result, compare_held(s, renderer, render, figures));
     ORL_THEN(result, orl_renderer_draw(renderer, &s->targets.views[0].view, render, NULL, NULL));
     if (result == ORL_OK) {
-        orl_trim_count_bytes(s->source.gpu, &figures->point_bytes, &figures->photo_bytes);
-        figures->device_bytes = orl_gpu_bytes(s->source.gpu);
+        orl_trim_count_bytes(s->gpu, &figures->point_bytes, &figures->photo_bytes);
+        figures->device_bytes = orl_gpu_bytes(s->gpu);
         figures->file_bytes = orl_trim_scene_file_bytes(scene);
     }
     orl_renderer_destroy(&renderer);
@@ -68,29 +70,21 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
 
 static enum orl_result start(struct trim_search *s)
 {
-    struct trim_source *source = &s->source;
     const struct orl_trim_params *p = s->params;
-    size_t photos = source->scene->photo_count;
-    ORL_TRY(orl_validation_load(source->log, source->scene, 0, p->size_divide, &s->targets));
-    size_t n = s->targets.count;
-    s->first = orl_array(source->log, n, sizeof *s->first);
-    s->now.score = orl_array(source->log, n, sizeof *s->now.score);
-    s->deciding_count = n < DECIDING_MAX ? n : DECIDING_MAX;
+    ORL_TRY(orl_validation_load(s->log, s->scene, 0, p->size_divide, &s->targets));
+    s->deciding_count = s->targets.count < DECIDING_MAX ? s->targets.count : DECIDING_MAX;
     s->validation_count = p->views && p->views < s->deciding_count ? p->views : s->deciding_count;
     s->most = orl_trim_has_budget(s)
                   ? (struct trim_loss){INFINITY, INFINITY, INFINITY}
                   : (struct trim_loss){p->tolerance_db, p->tolerance_ssim, p->worst_db};
-    s->first_state.render = p->start->params;
-    s->first_state.removed = orl_array(source->log, photos, sizeof *s->first_state.removed);
-    ORL_TRY_MEMORY(s->first && s->now.score && s->first_state.removed);
-    ORL_TRY(orl_point_ranking_make(source->gpu, source->scene, RANKED_VIEWS, p->progress, &source->ranking));
-    ORL_TRY(orl_trim_state_copy(source->log, &s->first_state, photos, &s->now.state));
+    ORL_TRY(orl_point_ranking_make(s->gpu, s->scene, RANKED_VIEWS, p->progress, &s->ranking));
     ORL_TRY(orl_trim_order_photos(s));
-    ORL_TRY(orl_trim_model_open(source, &s->now.state, &s->model));
-    ORL_TRY(orl_trim_measure_all(s, true, &s->trim->before));
+    ORL_TRY(orl_trim_state_begin(s, ORL_TRIM_OPTION, &s->first));
+    s->now = s->first;
+    ORL_TRY(orl_trim_model_open(s, s->first));
+    ORL_TRY(orl_trim_measure_all(s, &s->trim->before));
     ORL_TRY(orl_trim_time_first(s));
-    s->now.bytes = orl_trim_model_bytes(s, s->model, &s->now.state);
-    s->now.slower = 1;
+    s->first->step.bytes = orl_trim_model_bytes(s, s->first);
     return ORL_OK;
 }
 
@@ -103,7 +97,7 @@ static enum orl_result tune(struct trim_search *s)
         .size_divide = TUNED_DIVIDE * p->size_divide, .views = TUNED_VIEWS,
         .gain_db = tuned_gain * p->tolerance_db, .budget_s = tuned_time * p->budget_s,
         .progress = p->progress};
-    enum orl_result result = orl_search_run(s->source.gpu, s->model->renderer, s->source.scene,
+    enum orl_result result = orl_search_run(s->gpu, orl_trim_model_of(s->now)->renderer, s->scene,
                                             &params, p->start, NULL, &search);
     ORL_THEN(result, orl_trim_take_options(s, &search.best.params));
     orl_search_finish(&search);
@@ -114,13 +108,12 @@ static enum orl_result write_and_look(struct trim_search *s)
 {
     struct orl_trim *trim = s->trim;
     trim->choice = *s->params->start;
-    trim->choice.params = s->now.state.render;
-    ORL_TRY(orl_trim_write_scene(s->source.log, &s->model->scene, s->now.state.removed, &trim->choice,
-                                 s->part));
-    orl_trim_model_close(&s->model); // so that only the scene's own bytes are counted
+    trim->choice.params = s->now->render;
+    ORL_TRY(orl_trim_write_scene(s->log, &orl_trim_model_of(s->now)->scene, s->now->removed, &trim->choice, s->part));
+    orl_trim_models_close(s->now); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
-    ORL_TRY(look_at(s, s->source.scene->dir, &s->first_state.render, &trim->before));
-    return look_at(s, s->part, &s->now.state.render, &trim->after);
+    ORL_TRY(look_at(s, s->scene->dir, &s->first->render, &trim->before));
+    return look_at(s, s->part, &s->now->render, &trim->after);
 }
 
 static enum orl_result run(struct trim_search *s)
@@ -138,16 +131,14 @@ static enum orl_result run(struct trim_search *s)
 
 static void finish(struct trim_search *s)
 {
-    orl_trim_model_close(&s->model);
-    orl_point_ranking_finish(&s->source.ranking);
+    while (s->now) {
+        struct trim_state *before = s->now->before;
+        orl_trim_state_destroy(&s->now);
+        s->now = before;
+    }
+    orl_point_ranking_finish(&s->ranking);
     orl_validation_finish(&s->targets);
-    for (size_t i = 0; i < s->history_count; i++)
-        orl_trim_standing_finish(&s->history[i]);
-    orl_trim_standing_finish(&s->now);
-    free(s->history);
     free(s->order);
-    free(s->first);
-    free(s->first_state.removed);
 }
 
 enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -163,9 +154,8 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                         "prepare --resume with a larger --max-ram writes one", scene->dir);
     struct orl_new_dir part = {.fd = -1};
     enum orl_result result = orl_new_dir_begin(log, params->out, &part);
-    struct trim_search s = {.source = {.gpu = gpu, .log = log, .scene = scene},
-                            .params = params, .trim = trim, .part = part.path,
-                            .start_s = orl_time_s()};
+    struct trim_search s = {.gpu = gpu, .log = log, .scene = scene, .params = params, .trim = trim,
+                            .part = part.path, .start_s = orl_time_s()};
     ORL_THEN(result, run(&s));
     finish(&s);
     ORL_THEN(result, orl_new_dir_finish(log, &part));
@@ -179,4 +169,44 @@ void orl_trim_finish(struct orl_trim *trim)
 {
     free(trim->steps);
     memset(trim, 0, sizeof *trim);
+}
+
+// --- the report ---
+
+static json_t *figures_json(const struct orl_trim_figures *f)
+{
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "points",
+                     (json_int_t)f->points, "photographs", (json_int_t)f->photographs,
+                     "point_bytes", (json_int_t)f->point_bytes, "photo_bytes",
+                     (json_int_t)f->photo_bytes, "device_bytes", (json_int_t)f->device_bytes,
+                     "file_bytes", (json_int_t)f->file_bytes, "frame_ms", f->frame_ms, "psnr_db",
+                     f->psnr_db, "ssim", f->ssim, "worst_loss_db", f->worst_loss_db,
+                     "held_psnr_db", f->held_psnr_db, "held_ssim", f->held_ssim);
+}
+
+static json_t *step_json(const struct orl_trim_step *s)
+{
+    return json_pack("{s:s, s:o, s:f, s:f, s:b, s:f, s:f, s:f, s:f}", "part",
+                     orl_trim_part_names[s->part], "what", orl_json_string(s->what), "loss_db",
+                     s->loss_db, "loss_ssim", s->loss_ssim, "taken", s->taken, "bytes", s->bytes,
+                     "ms", s->ms, "total_loss_db", s->total_loss_db, "total_loss_ssim",
+                     s->total_loss_ssim);
+}
+
+enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
+                                    const struct orl_scene *scene, const char *device,
+                                    const struct orl_trim *trim)
+{
+    json_t *steps = json_array();
+    for (size_t i = 0; i < trim->step_count; i++)
+        json_array_append_new(steps, step_json(&trim->steps[i]));
+    json_t *root = json_pack(
+        "{s:o, s:s, s:s, s:o, s:o, s:o, s:b, s:I, s:o}", "scene", orl_json_string(scene->dir),
+        "device", device, "method", trim->choice.method->name, "settings",
+        orl_choice_settings(&trim->choice), "before",
+        figures_json(&trim->before), "after", figures_json(&trim->after), "complete",
+        trim->complete, "undone", (json_int_t)trim->undone, "steps", steps);
+    enum orl_result result = orl_json_write(log, path, root);
+    json_decref(root);
+    return result;
 }

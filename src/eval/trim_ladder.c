@@ -3,7 +3,6 @@
 // levels one after the other, points and photographs by bisection.
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -14,7 +13,6 @@ const char *const orl_trim_part_names[ORL_TRIM_PART_COUNT] = {
     "points", "photograph", "textures", "depth", "option"};
 
 enum {
-    MENDS_MAX = 4,       // of photographs that go together
     BISECTIONS = 5,      // of points or photographs
     BUDGET_DIVIDE = 12,  // towards a budget they go in so many steps
 };
@@ -25,12 +23,12 @@ static const double budget_first_db = 0.025, budget_growth = 2, budget_last_db =
 // SSIM of the same size, as the default tolerances have it.
 static const double ssim_per_db = 0.1;
 
-// Options whose cheaper values save time.
+// Options whose cheaper values save time: levels of their own, each of which is tried from every state.
 static const char *const cheaper[] = {
     "sampling=bilinear", "antialias=off", "median=off", "guess_blur=0",
     "outliers=0", "min_support=0", "photos_per_pixel=2"};
 
-// `max`: the last level; of options: none. `share`: of what is left of the tolerances.
+// `max`: the last level. `share`: of what is left of the tolerances.
 struct rung {
     enum orl_trim_part part;
     size_t max;
@@ -43,23 +41,9 @@ static const struct rung ladder[] = {
     {ORL_TRIM_TEXTURES, ORL_TEXTURES_BC1, 1},
     {ORL_TRIM_PHOTOGRAPH, SIZE_MAX, 0.5},
     {ORL_TRIM_POINTS, TRIM_POINT_LEVELS - 1, 1},
-    {ORL_TRIM_OPTION, 0, 1},
+    {ORL_TRIM_OPTION, ORL_COUNT(cheaper), 1},
 };
-
-// --- options ---
-
-// Sets `next` to the options with this assignment. False when it changes nothing or the method does
-// not read it.
-static bool assign(const struct orl_render_params *render, const struct orl_render_option *option,
-                   const char *assignment, struct orl_render_params *next)
-{
-    *next = *render;
-    if (!option || orl_render_params_set(NULL, next, assignment) != ORL_OK)
-        return false;
-    if (option->kind == ORL_OPTION_NUMBER)
-        return orl_render_option_number(option, next) < orl_render_option_number(option, render);
-    return memcmp(next, render, sizeof *next) != 0;
-}
+static const struct rung *const options = &ladder[ORL_COUNT(ladder) - 1];
 
 // --- levels ---
 
@@ -73,45 +57,48 @@ static size_t max_level(const struct trim_search *s, const struct rung *rung)
 {
     if (rung->part == ORL_TRIM_PHOTOGRAPH)
         return s->targets.count - ORL_VALIDATION_TRAIN_MIN;
-    return rung->part == ORL_TRIM_POINTS && !s->source.scene->points.count ? 0 : rung->max;
+    return rung->part == ORL_TRIM_POINTS && !s->scene->points.count ? 0 : rung->max;
 }
 
-static bool has_level(const struct trim_search *s, const struct rung *rung, size_t level)
+// False when the assignment changes nothing or the method does not read it.
+static bool set_option(const char *assignment, struct trim_state *t)
 {
-    return rung->part != ORL_TRIM_TEXTURES ||
-           (level >= ORL_TEXTURES_YCC &&
-            orl_textures_available(s->source.gpu, (enum orl_textures)level));
+    const struct orl_render_params before = t->render;
+    char key[64];
+    snprintf(key, sizeof key, "%.*s", (int)strcspn(assignment, "="), assignment);
+    const struct orl_render_option *option = orl_render_option_find(key);
+    if (!option || orl_render_params_set(NULL, &t->render, assignment) != ORL_OK)
+        return false;
+    // Where the splats change, the photographs' depth maps are drawn anew.
+    t->shares = !strstr(option->readers, "proxy=");
+    if (option->kind == ORL_OPTION_NUMBER)
+        return orl_render_option_number(option, &t->render) < orl_render_option_number(option, &before);
+    return memcmp(&t->render, &before, sizeof before) != 0;
 }
 
-static void remove_photographs(const struct trim_search *s, size_t count, struct trim_state *state)
+// False when there is nothing to try.
+static bool set_level(const struct trim_search *s, size_t level, struct trim_state *t)
 {
-    memset(state->removed, 0, s->source.scene->photo_count * sizeof *state->removed);
-    state->removed_count = count;
-    for (size_t k = 0; k < count; k++)
-        state->removed[s->targets.views[s->order[k]].photo] = true;
-}
-
-static void set_level(const struct trim_search *s, enum orl_trim_part part, size_t level,
-                      struct trim_trial *t)
-{
-    struct trim_state *state = &t->now.state;
     struct orl_scene_defaults defaults;
-    enum { SIZE = sizeof t->what };
-    state->level[part] = level;
-    switch (part) {
+    enum { SIZE = sizeof t->step.what };
+    t->level[t->step.part] = level;
+    switch (t->step.part) {
     case ORL_TRIM_POINTS:
-        snprintf(t->what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[level]);
-        break;
-    case ORL_TRIM_PHOTOGRAPH:
-        remove_photographs(s, level, state);
-        break;
+        snprintf(t->step.what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[level]);
+        return true;
     case ORL_TRIM_TEXTURES:
-        snprintf(t->what, SIZE, "textures %s", orl_textures_names[level]);
-        break;
+        snprintf(t->step.what, SIZE, "textures %s", orl_textures_names[level]);
+        return level >= ORL_TEXTURES_YCC && orl_textures_available(s->gpu, (enum orl_textures)level);
+    case ORL_TRIM_DEPTH:
+        defaults = orl_trim_defaults(s, t);
+        snprintf(t->step.what, SIZE, "depth 1/%d, %d bits", defaults.depth_divide, defaults.depth_half ? 16 : 32);
+        return true;
+    case ORL_TRIM_OPTION:
+        snprintf(t->step.what, SIZE, "%s", cheaper[level - 1]);
+        return set_option(cheaper[level - 1], t);
     default:
-        defaults = orl_trim_defaults(&s->source, state);
-        snprintf(t->what, SIZE, "depth 1/%d, %d bits", defaults.depth_divide,
-                 defaults.depth_half ? 16 : 32);
+        t->shares = true;
+        return true;
     }
 }
 
@@ -124,12 +111,12 @@ bool orl_trim_has_budget(const struct trim_search *s)
 
 static bool has_bytes(const struct trim_search *s)
 {
-    return !s->params->max_bytes || s->now.bytes <= (double)s->params->max_bytes;
+    return !s->params->max_bytes || s->now->step.bytes <= (double)s->params->max_bytes;
 }
 
 static bool has_time(const struct trim_search *s)
 {
-    return !(s->params->max_frame_ms > 0) || s->first_ms * s->now.slower <= s->params->max_frame_ms;
+    return !(s->params->max_frame_ms > 0) || s->first_ms * s->now->slower <= s->params->max_frame_ms;
 }
 
 static bool within_budget(const struct trim_search *s)
@@ -143,82 +130,47 @@ static bool is_spent(const struct trim_search *s, double share)
 }
 
 // Whether the step saves what is wanted: bytes, or time by options; towards a budget, what is above it.
-static bool is_wanted(const struct trim_search *s, const struct trim_trial *t)
+static bool is_wanted(const struct trim_search *s, const struct trim_state *t)
 {
+    bool smaller = t->step.bytes < s->now->step.bytes, faster = t->slower < s->now->slower;
     if (orl_trim_has_budget(s))
-        return (!has_bytes(s) && t->now.bytes < s->now.bytes) || (!has_time(s) && t->now.slower < 1);
-    return t->part == ORL_TRIM_OPTION ? t->now.slower < 1 : t->now.bytes < s->now.bytes;
+        return (!has_bytes(s) && smaller) || (!has_time(s) && faster);
+    return t->step.part == ORL_TRIM_OPTION ? faster : smaller;
 }
 
 // --- steps ---
 
-// Measures the trial and takes it if it fits and is wanted. What loses too much to be taken is not timed,
-// and fewer points and smaller maps make no frame slower.
-static enum orl_result decide(struct trim_search *s, struct trim_trial *t, bool shares,
-                              double share, bool *taken)
+// Takes the measured state if it fits and is wanted. What loses too much to be taken is not timed, and
+// fewer points and smaller maps make no frame slower.
+static enum orl_result decide(struct trim_search *s, struct trim_state **trial, double share, bool *taken)
 {
-    *taken = false;
-    ORL_TRY(orl_trim_trial_measure(s, t, shares));
-    bool fits = orl_trim_trial_fits(s, t, share);
-    bool slows = t->part == ORL_TRIM_TEXTURES || t->part == ORL_TRIM_OPTION;
+    struct trim_state *t = *trial;
+    bool fits = orl_trim_fits(s, &t->loss, share);
+    bool slows = t->step.part == ORL_TRIM_TEXTURES || t->step.part == ORL_TRIM_OPTION;
     if (fits && (slows || s->params->max_frame_ms > 0))
         ORL_TRY(orl_trim_time_trial(s, t));
     *taken = fits && is_wanted(s, t);
-    orl_logf(s->source.log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst "
-             "%.3f dB%s", t->what, t->step.db, t->step.ssim, t->now.loss.db, t->now.loss.worst_db,
+    orl_logf(s->log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst %.3f dB%s",
+             t->step.what, t->step.loss_db, t->step.loss_ssim, t->loss.db, t->loss.worst_db,
              *taken ? ": taken" : "");
-    return *taken ? orl_trim_trial_take(s, t) : ORL_OK;
+    return *taken ? orl_trim_take(s, trial) : ORL_OK;
 }
 
-// Photographs come back that views beside them, or views that lose too much, need.
-static enum orl_result mend(struct trim_search *s, struct trim_trial *t)
+// Whether a higher level may be taken, too: this one was, or is none that the scene has.
+static enum orl_result try_level(struct trim_search *s, const struct rung *rung, size_t level, bool *higher)
 {
-    enum orl_result result = orl_trim_put_back(s, &t->now.state);
-    for (int i = 0; result == ORL_OK && i < MENDS_MAX; i++) {
-        result = orl_trim_trial_measure(s, t, true);
-        if (result == ORL_OK && !orl_trim_mend(s, t))
-            break;
+    struct trim_state *t;
+    enum orl_result result = orl_trim_state_begin(s, rung->part, &t);
+    *higher = true;
+    if (result == ORL_OK && set_level(s, level, t)) {
+        result = rung->part == ORL_TRIM_PHOTOGRAPH ? orl_trim_remove_photos(s, level, t) : orl_trim_measure(s, t);
+        ORL_THEN(result, decide(s, &t, rung->share, higher));
     }
-    snprintf(t->what, sizeof t->what, "photographs %zu of %zu",
-             s->targets.count - t->now.state.removed_count, s->targets.count);
+    orl_trim_state_destroy(&t);
     return result;
 }
 
-static enum orl_result try_level(struct trim_search *s, const struct rung *rung, size_t level,
-                                 bool *taken)
-{
-    struct trim_trial t;
-    bool photographs = rung->part == ORL_TRIM_PHOTOGRAPH;
-    enum orl_result result = orl_trim_trial_begin(s, rung->part, &t);
-    *taken = false;
-    if (result == ORL_OK)
-        set_level(s, rung->part, level, &t);
-    if (result == ORL_OK && photographs)
-        result = mend(s, &t);
-    ORL_THEN(result, decide(s, &t, photographs, rung->share, taken));
-    orl_trim_trial_end(&t);
-    return result;
-}
-
-// Not possible: it is not taken.
-static enum orl_result try_option(struct trim_search *s, const char *assignment)
-{
-    struct trim_trial t;
-    struct orl_render_params next;
-    bool taken;
-    char key[64];
-    snprintf(key, sizeof key, "%.*s", (int)strcspn(assignment, "="), assignment);
-    const struct orl_render_option *option = orl_render_option_find(key);
-    if (!assign(&s->now.state.render, option, assignment, &next))
-        return ORL_OK;
-    enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
-    t.now.state.render = next;
-    snprintf(t.what, sizeof t.what, "%s", assignment);
-    // Where the splats change, the photographs' depth maps are drawn anew.
-    ORL_THEN(result, decide(s, &t, !strstr(option->readers, "proxy="), 1, &taken));
-    orl_trim_trial_end(&t);
-    return result;
-}
+// --- rungs ---
 
 // Whether the search ends here; the time that ran out is noted.
 static bool ends(struct trim_search *s)
@@ -228,16 +180,21 @@ static bool ends(struct trim_search *s)
     return !s->trim->complete || within_budget(s);
 }
 
-// --- rungs ---
-
-static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
+// until_fast: ends as soon as a frame is as fast as it should be.
+static enum orl_result climb_rung(struct trim_search *s, const struct rung *rung, bool until_fast)
 {
-    size_t low = s->now.state.level[rung->part], high = max_level(s, rung);
-    for (int i = 0; low < high && i < BISECTIONS && !ends(s); i++) {
-        size_t level = (low + high + 1) / 2;
-        bool taken;
-        ORL_TRY(try_level(s, rung, level, &taken));
-        if (taken)
+    bool option = rung->part == ORL_TRIM_OPTION;
+    bool many = rung->part == ORL_TRIM_POINTS || rung->part == ORL_TRIM_PHOTOGRAPH;
+    bool halves = many && !orl_trim_has_budget(s);
+    size_t low = option ? 0 : s->now->level[rung->part], high = max_level(s, rung);
+    size_t by = many ? high / BUDGET_DIVIDE + 1 : 1;
+    for (int i = 0; low < high && (!halves || i < BISECTIONS); i++) {
+        size_t level = halves ? (low + high + 1) / 2 : low + by;
+        bool higher;
+        if (level > high || (until_fast ? s->now->slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s)))
+            break;
+        ORL_TRY(try_level(s, rung, level, &higher));
+        if (higher || option)
             low = level;
         else
             high = level - 1;
@@ -245,45 +202,14 @@ static enum orl_result bisect(struct trim_search *s, const struct rung *rung)
     return ORL_OK;
 }
 
-static enum orl_result climb_levels(struct trim_search *s, const struct rung *rung, size_t by)
-{
-    bool taken = true;
-    for (size_t level = s->now.state.level[rung->part] + by;
-         taken && level <= max_level(s, rung) && !ends(s); level += by)
-        if (has_level(s, rung, level))
-            ORL_TRY(try_level(s, rung, level, &taken));
-    return ORL_OK;
-}
-
-// Ends early when a frame is as fast as it should be, if that is what is wanted.
-static enum orl_result climb_options(struct trim_search *s, bool until_fast)
-{
-    for (size_t i = 0; i < ORL_COUNT(cheaper); i++) {
-        if (until_fast ? s->now.slower <= orl_trim_slow_limit(s) || is_spent(s, 1) : ends(s))
-            break;
-        ORL_TRY(try_option(s, cheaper[i]));
-    }
-    return ORL_OK;
-}
-
-static enum orl_result climb_rung(struct trim_search *s, const struct rung *rung)
-{
-    bool many = rung->part == ORL_TRIM_POINTS || rung->part == ORL_TRIM_PHOTOGRAPH;
-    if (rung->part == ORL_TRIM_OPTION)
-        return climb_options(s, false);
-    if (many && !orl_trim_has_budget(s))
-        return bisect(s, rung);
-    ORL_TRY(climb_levels(s, rung, many ? max_level(s, rung) / BUDGET_DIVIDE + 1 : 1));
-    bool textures = rung->part == ORL_TRIM_TEXTURES && !orl_trim_has_budget(s);
-    return textures ? climb_options(s, true) : ORL_OK;
-}
-
 static enum orl_result climb_ladder(struct trim_search *s)
 {
     for (size_t i = 0; i < ORL_COUNT(ladder) && !ends(s); i++) {
         orl_progress_report(s->params->progress, "trim", (double)i, (double)ORL_COUNT(ladder),
                             orl_trim_part_names[ladder[i].part]);
-        ORL_TRY(climb_rung(s, &ladder[i]));
+        ORL_TRY(climb_rung(s, &ladder[i], false));
+        if (ladder[i].part == ORL_TRIM_TEXTURES && !orl_trim_has_budget(s))
+            ORL_TRY(climb_rung(s, options, true));
     }
     return ORL_OK;
 }
@@ -300,10 +226,10 @@ enum orl_result orl_trim_climb(struct trim_search *s)
     }
     s->most.db = s->most.ssim = INFINITY; // nothing is taken back
     if (s->trim->complete && !within_budget(s))
-        return orl_fail(s->source.log, ORL_ERR_DATA,
+        return orl_fail(s->log, ORL_ERR_DATA,
                         "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
-                        "than is allowed", s->source.scene->dir, s->now.bytes / (1 << 20),
-                        s->first_ms * s->now.slower);
+                        "than is allowed", s->scene->dir, s->now->step.bytes / (1 << 20),
+                        s->first_ms * s->now->slower);
     return ORL_OK;
 }
 
@@ -312,13 +238,15 @@ enum orl_result orl_trim_climb(struct trim_search *s)
 // Compressed textures are what makes a frame slower.
 static enum orl_result drop_textures(struct trim_search *s)
 {
-    struct trim_trial t;
-    enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_TEXTURES, &t);
-    t.now.state.level[ORL_TRIM_TEXTURES] = ORL_TEXTURES_AUTO;
-    snprintf(t.what, sizeof t.what, "textures as they were");
-    ORL_THEN(result, orl_trim_trial_measure(s, &t, false));
-    ORL_THEN(result, orl_trim_trial_take(s, &t));
-    orl_trim_trial_end(&t);
+    struct trim_state *t;
+    enum orl_result result = orl_trim_state_begin(s, ORL_TRIM_TEXTURES, &t);
+    if (result == ORL_OK) {
+        t->level[ORL_TRIM_TEXTURES] = ORL_TEXTURES_AUTO;
+        snprintf(t->step.what, sizeof t->step.what, "textures as they were");
+        result = orl_trim_measure(s, t);
+    }
+    ORL_THEN(result, orl_trim_take(s, &t));
+    orl_trim_state_destroy(&t);
     return result;
 }
 
@@ -327,10 +255,10 @@ enum orl_result orl_trim_make_faster(struct trim_search *s)
     bool slow;
     ORL_TRY(orl_trim_time_whole(s, &slow));
     if (slow) {
-        ORL_TRY(climb_options(s, true));
+        ORL_TRY(climb_rung(s, options, true));
         ORL_TRY(orl_trim_time_whole(s, &slow));
     }
-    if (slow && s->now.state.level[ORL_TRIM_TEXTURES] != ORL_TEXTURES_AUTO) {
+    if (slow && s->now->level[ORL_TRIM_TEXTURES] != ORL_TEXTURES_AUTO) {
         ORL_TRY(drop_textures(s));
         ORL_TRY(orl_trim_time_whole(s, &slow));
     }
@@ -342,16 +270,18 @@ enum orl_result orl_trim_make_faster(struct trim_search *s)
 enum orl_result orl_trim_take_options(struct trim_search *s,
                                       const struct orl_render_params *render)
 {
-    struct trim_trial t;
-    enum orl_result result = orl_trim_trial_begin(s, ORL_TRIM_OPTION, &t);
-    t.now.state.render = *render;
-    snprintf(t.what, sizeof t.what, "tuned options");
-    ORL_THEN(result, orl_trim_trial_measure(s, &t, false));
-    bool better = result == ORL_OK && t.step.db < 0 && orl_trim_trial_fits(s, &t, 1);
+    struct trim_state *t;
+    enum orl_result result = orl_trim_state_begin(s, ORL_TRIM_OPTION, &t);
+    if (result == ORL_OK) {
+        t->render = *render;
+        snprintf(t->step.what, sizeof t->step.what, "tuned options");
+        result = orl_trim_measure(s, t);
+    }
+    bool better = result == ORL_OK && t->step.loss_db < 0 && orl_trim_fits(s, &t->loss, 1);
     if (better)
-        result = orl_trim_time_trial(s, &t);
-    if (better && result == ORL_OK && t.now.slower <= orl_trim_slow_limit(s))
-        result = orl_trim_trial_take(s, &t);
-    orl_trim_trial_end(&t);
+        result = orl_trim_time_trial(s, t);
+    if (better && result == ORL_OK && t->slower <= orl_trim_slow_limit(s))
+        result = orl_trim_take(s, &t);
+    orl_trim_state_destroy(&t);
     return result;
 }

@@ -1,17 +1,22 @@
 // Which photographs go first, and which must stay.
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "eval/trim_search.h"
 
-enum { NEAREST = 2 };
+enum {
+    NEAREST = 2,
+    MENDS_MAX = 4, // of photographs that go together
+};
 // Views beside a photograph that goes may change by as much as renderings there are wrong anyway.
 static const double between_max_db = 3;
 
 static double apart(const struct trim_search *s, size_t a, size_t b)
 {
-    return orl_validation_apart(s->source.scene, s->targets.views[a].photo,
+    return orl_validation_apart(s->scene, s->targets.views[a].photo,
                                 s->targets.views[b].photo);
 }
 
@@ -46,9 +51,9 @@ static struct neighbours nearest_left(const struct trim_search *s, const bool *r
 
 enum orl_result orl_trim_order_photos(struct trim_search *s)
 {
-    const struct orl_log *log = s->source.log;
+    const struct orl_log *log = s->log;
     size_t n = s->targets.count;
-    bool *removed = orl_array(log, s->source.scene->photo_count, sizeof *removed);
+    bool *removed = orl_array(log, s->scene->photo_count, sizeof *removed);
     struct neighbours *near = orl_array(log, n, sizeof *near);
     s->order = orl_array(log, n, sizeof *s->order);
     enum orl_result result = removed && near && s->order ? ORL_OK : ORL_ERR_MEMORY;
@@ -77,13 +82,13 @@ static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *v
                                  struct orl_image *picture)
 {
     struct orl_frame frame = {0};
-    struct orl_render_params render = s->now.state.render;
+    struct orl_render_params render = s->now->render;
     render.leave_out = ~0u;
     enum orl_result result =
         orl_progress_cancelled(s->params->progress)
             ? ORL_ERR_CANCELLED
-            : orl_renderer_draw(s->model->renderer, view, &render, removed, &frame);
-    ORL_THEN(result, orl_tone_srgb(s->source.log, &frame.color, picture));
+            : orl_renderer_draw(orl_trim_model_of(s->now)->renderer, view, &render, removed, &frame);
+    ORL_THEN(result, orl_tone_srgb(s->log, &frame.color, picture));
     orl_frame_finish(&frame);
     return result;
 }
@@ -100,7 +105,7 @@ static enum orl_result between_loss(struct trim_search *s, const bool *removed, 
     enum orl_result result = draw_srgb(s, &view, NULL, &with);
     ORL_THEN(result, draw_srgb(s, &view, removed, &without));
     if (result == ORL_OK)
-        *loss_db = 10 * log10(1 + pow(10, 0.1 * (s->first[target].db -
+        *loss_db = 10 * log10(1 + pow(10, 0.1 * (s->first->score[target].db -
                                                  orl_metrics_psnr_db(&with, &without))));
     orl_image_finish(&with);
     orl_image_finish(&without);
@@ -113,7 +118,7 @@ static void put_back(struct trim_state *state, size_t photo)
     state->removed_count--;
 }
 
-enum orl_result orl_trim_put_back(struct trim_search *s, struct trim_state *state)
+static enum orl_result put_back_beside(struct trim_search *s, struct trim_state *state)
 {
     for (size_t i = 0; i < s->targets.count; i++) {
         size_t photo = s->targets.views[i].photo;
@@ -142,17 +147,34 @@ static size_t nearest_removed(const struct trim_search *s, const struct trim_sta
     return found;
 }
 
-bool orl_trim_mend(const struct trim_search *s, struct trim_trial *t)
+// Puts back what measured views need that lose too much; the state then has to be measured again.
+// False: there are none.
+static bool mend(const struct trim_search *s, struct trim_state *t)
 {
     bool mended = false;
     for (size_t v = 0; v < s->targets.count; v++) {
-        size_t near = nearest_removed(s, &t->now.state, v);
-        if (near == s->targets.count || !(s->first[v].db - t->now.score[v].db > s->most.worst_db))
+        size_t near = nearest_removed(s, t, v);
+        if (near == s->targets.count || !(s->first->score[v].db - t->score[v].db > s->most.worst_db))
             continue;
-        put_back(&t->now.state, s->targets.views[near].photo);
+        put_back(t, s->targets.views[near].photo);
         mended = true;
     }
     for (size_t v = 0; mended && v < s->targets.count; v++)
-        t->now.score[v] = (struct trim_score){NAN, NAN};
+        t->score[v] = (struct trim_score){NAN, NAN};
     return mended;
+}
+
+enum orl_result orl_trim_remove_photos(struct trim_search *s, size_t count, struct trim_state *t)
+{
+    memset(t->removed, 0, s->scene->photo_count * sizeof *t->removed);
+    t->removed_count = count;
+    for (size_t k = 0; k < count; k++)
+        t->removed[s->targets.views[s->order[k]].photo] = true;
+    ORL_TRY(put_back_beside(s, t));
+    ORL_TRY(orl_trim_measure(s, t));
+    for (int i = 0; i < MENDS_MAX && mend(s, t); i++)
+        ORL_TRY(orl_trim_measure(s, t));
+    snprintf(t->step.what, sizeof t->step.what, "photographs %zu of %zu", s->targets.count - t->removed_count,
+             s->targets.count);
+    return ORL_OK;
 }

@@ -6,7 +6,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
-#include "eval/trim_internal.h"
+#include "eval/trim_search.h"
 #include "scene/manifest.h"
 #include "scene/subset.h"
 #include "scene/tuned_settings.h"

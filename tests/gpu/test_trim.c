@@ -273,41 +273,38 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
     (void)state;
     struct fixture f;
     setup_same_places(&f);
+    const struct orl_choice start = {.params = orl_method_find(NULL, "points")->params};
+    const struct orl_trim_params params = {.start = &start};
     for (int fine = 0; fine < 2; fine++) {
         struct orl_trim report = {0};
-        const struct orl_trim_params params = {0};
-        struct trim_search s = {.source = {.gpu = gpu, .scene = &f.scene}, .params = &params,
-                                .trim = &report, .most = {.db = 0.5, .ssim = 1, .worst_db = 9},
-                                .now.bytes = 100};
-        struct trim_score first[PHOTOS_MAX] = {0};
-        s.first = first;
-        s.now.state.render = orl_method_find(NULL, "points")->params;
+        struct trim_search s = {.gpu = gpu, .scene = &f.scene, .params = &params, .trim = &report,
+                                .most = {.db = 0.5, .ssim = 1, .worst_db = 9}};
         assert_int_equal(orl_validation_load(NULL, &f.scene, 0, 1, &s.targets), ORL_OK);
-        s.now.state.removed = calloc(f.scene.photo_count, sizeof *s.now.state.removed);
-        s.now.score = calloc(f.scene.photo_count, sizeof *s.now.score);
-        assert_int_equal(orl_trim_model_open(&s.source, &s.now.state, &s.model), ORL_OK);
-        assert_int_equal(orl_trim_measure_all(&s, true, &report.before), ORL_OK);
+        assert_int_equal(orl_trim_state_begin(&s, ORL_TRIM_DEPTH, &s.first), ORL_OK);
+        s.now = s.first;
+        s.first->step.bytes = 100;
+        assert_int_equal(orl_trim_model_open(&s, s.first), ORL_OK);
+        assert_int_equal(orl_trim_measure_all(&s, &report.before), ORL_OK);
         for (size_t level = 1; level <= 2; level++) {
-            struct trim_trial t;
-            assert_int_equal(orl_trim_trial_begin(&s, ORL_TRIM_DEPTH, &t), ORL_OK);
-            t.now.state.level[ORL_TRIM_DEPTH] = level;
-            t.now.bytes = s.now.bytes - 10;
-            assert_int_equal(orl_trim_trial_take(&s, &t), ORL_OK);
-            orl_trim_trial_end(&t);
+            struct trim_state *t;
+            assert_int_equal(orl_trim_state_begin(&s, ORL_TRIM_DEPTH, &t), ORL_OK);
+            t->level[ORL_TRIM_DEPTH] = level;
+            t->step.bytes = s.now->step.bytes - 10;
+            assert_int_equal(orl_trim_take(&s, &t), ORL_OK);
         }
         for (size_t i = 0; i < s.targets.count; i++)
-            first[i].db += fine ? 0.4 : 0.6;
+            s.first->score[i].db += fine ? 0.4 : 0.6;
         assert_int_equal(orl_trim_confirm(&s), ORL_OK);
-        assert_int_equal(s.history_count, fine ? 2 : 0);
-        assert_int_equal(s.now.state.level[ORL_TRIM_DEPTH], fine ? 2 : 0);
+        assert_true((s.now == s.first) == !fine);
+        assert_int_equal(s.now->level[ORL_TRIM_DEPTH], fine ? 2 : 0);
         assert_int_equal(report.undone, fine ? 0 : 2);
         assert_true(report.steps[1].taken == fine);
-        assert_float_equal(s.now.bytes, fine ? 80 : 100, 0);
-        orl_trim_model_close(&s.model);
-        for (size_t i = 0; i < s.history_count; i++)
-            orl_trim_standing_finish(&s.history[i]);
-        free(s.history);
-        orl_trim_standing_finish(&s.now);
+        assert_float_equal(s.now->step.bytes, fine ? 80 : 100, 0);
+        while (s.now) {
+            struct trim_state *before = s.now->before;
+            orl_trim_state_destroy(&s.now);
+            s.now = before;
+        }
         orl_validation_finish(&s.targets);
         orl_trim_finish(&report);
     }
