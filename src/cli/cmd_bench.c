@@ -154,7 +154,7 @@ static enum orl_result report(const struct orl_log *log, const struct bench_opti
 {
     if (!report_on_stdout(o->json))
         print_tables(bench);
-    return o->json ? report_write(log, o->json, orl_bench_to_json(log, bench)) : ORL_OK;
+    return o->json ? report_write(log, o->json, orl_bench_report(bench)) : ORL_OK;
 }
 
 static enum orl_result run_bench(struct call *call)

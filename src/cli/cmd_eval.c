@@ -1,10 +1,8 @@
 // oriel eval: compares held-out photographs with renderings.
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "cli/command.h"
 #include "cli/command_output.h"
-#include "core/memory.h"
 #include "core/text.h"
 #include "eval/stability.h"
 #include "eval/view_figures.h"
@@ -45,7 +43,7 @@ struct job {
     struct orl_hdr *hdr;         // of the current method, with --merge
     struct orl_truth truth;
     struct orl_choices choices;
-    struct orl_eval *evals; // one per choice
+    json_t *reports;             // one per choice
 };
 
 // --- tables on stdout ---
@@ -92,17 +90,25 @@ static void print_passes(const struct orl_eval *eval)
         printf("%-24s %9.2f\n", eval->passes[i].name, eval->passes[i].ms);
 }
 
-static void print_walk_row(void *priv, const struct orl_stability *s)
+static void print_eval(const struct orl_eval *eval, bool first, bool passes)
+{
+    if (!first)
+        printf("\n");
+    print_table(eval);
+    if (passes)
+        print_passes(eval);
+    fflush(stdout);
+}
+
+static void print_walk_row(const struct orl_stability *s, bool first)
 {
     const struct orl_stability_step *all = &s->all;
     char block[64], jump[64];
-    bool *first = priv;
-    if (*first)
+    if (first)
         printf("walk of %zu frames of %dx%d, %s; differences of one frame, warped, to the next, "
                "in 8-bit values\n%-14s %8s %7s %7s %7s  %7s %22s  %15s %9s\n", s->step_count + 1,
                s->width, s->height, s->device, "method", "seen%", "mean", "floor", "p99",
                "blocks", "worst block", "worst jump", "ms");
-    *first = false;
     snprintf(block, sizeof block, "%.2f %zu:%d,%d", all->block_worst, s->worst_block_step + 1,
              all->block_x, all->block_y);
     snprintf(jump, sizeof jump, "%.2f %zu", all->jump, s->worst_jump_step + 1);
@@ -150,7 +156,7 @@ static enum orl_result evaluate(struct job *job, size_t index)
                                      .sequence = o->time_step < 0 && call->scene->frame_count
                                                      ? call->scene : NULL,
                                      .truth = o->truth ? &job->truth : NULL};
-    struct orl_eval *eval = &job->evals[index];
+    struct orl_eval eval = {0};
     enum orl_result result = ORL_OK;
     if (o->pictures) {
         params.method = "pictures";
@@ -161,53 +167,54 @@ static enum orl_result evaluate(struct job *job, size_t index)
     } else {
         result = start_renderer(job);
     }
-    ORL_THEN(result, orl_eval_run(call->gpu, call->renderer, call->scene, &params, eval));
+    ORL_THEN(result, orl_eval_run(call->gpu, call->renderer, call->scene, &params, &eval));
     orl_hdr_destroy(&job->hdr);
     orl_renderer_destroy(&call->renderer);
-    if (result != ORL_OK || report_on_stdout(o->json))
-        return result;
-    if (index > 0)
-        printf("\n");
-    print_table(eval);
-    if (call->common->verbose)
-        print_passes(eval);
-    fflush(stdout);
+    ORL_TRY(result);
+    if (!report_on_stdout(o->json))
+        print_eval(&eval, index == 0, call->common->verbose);
+    json_array_append_new(job->reports, orl_eval_report(&eval));
+    orl_eval_finish(&eval);
     return ORL_OK;
 }
 
-static enum orl_result measure_walk(struct job *job, bool array)
+// Measures a method's walk, with the renderer of all.
+static enum orl_result walk(struct job *job, size_t index)
 {
     struct call *call = job->call;
     const struct eval_options *o = job->options;
-    bool first = true;
-    const struct orl_walk_params params = {
-        .choices = job->choices.items, .choice_count = job->choices.count, .frames = o->walk,
-        .path = o->path, .divide = o->divide, .image_dir = o->images, .priv = &first,
-        .on_result = report_on_stdout(o->json) ? NULL : print_walk_row,
-        .progress = call->progress};
-    struct orl_stability *all = orl_array(call->log, job->choices.count, sizeof *all);
-    enum orl_result result = all ? start_renderer(job) : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_stability_walk_all(call->gpu, call->renderer, call->scene, &params, all));
-    if (result == ORL_OK && o->json)
-        result = report_write(call->log, o->json, orl_stability_to_json(
-            call->log, call->scene, all, job->choices.count, array));
-    for (size_t i = 0; all && i < job->choices.count; i++)
-        orl_stability_finish(&all[i]);
-    free(all);
-    return result;
+    const struct orl_stability_params params = {.choice = &job->choices.items[index], .path = &call->path,
+                                                .image_dir = o->images, .progress = call->progress};
+    struct orl_stability measured;
+    ORL_TRY(orl_stability_run(call->gpu, call->renderer, &params, &measured));
+    if (!report_on_stdout(o->json))
+        print_walk_row(&measured, index == 0);
+    json_array_append_new(job->reports, orl_stability_report(call->scene, &measured));
+    orl_stability_finish(&measured);
+    return ORL_OK;
 }
 
-static enum orl_result measure_heldout(struct job *job, bool array)
+static enum orl_result measure(struct job *job)
 {
+    struct call *call = job->call;
     const struct eval_options *o = job->options;
-    job->evals = orl_array(job->call->log, job->choices.count, sizeof *job->evals);
-    enum orl_result result = job->evals ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; i < job->choices.count && result == ORL_OK; i++)
-        result = evaluate(job, i);
-    if (result == ORL_OK && o->json)
-        result = report_write(job->call->log, o->json,
-                              orl_eval_to_json(job->call->log, job->evals, job->choices.count, array));
-    return result;
+    const size_t count = job->choices.count;
+    const bool walks = o->walk || o->path;
+    job->reports = json_array();
+    enum orl_result result = ORL_OK;
+    if (walks)
+        result = orl_stability_walk(call->log, call->scene, o->path, (size_t)o->walk, o->divide, &call->path);
+    if (result == ORL_OK && walks)
+        result = start_renderer(job);
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        result = walks ? walk(job, i) : evaluate(job, i);
+    if (result != ORL_OK || !o->json)
+        return result;
+    bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||
+                 orl_names_contain(&o->methods, "paired");
+    bool whole = json_array_size(job->reports) == count; // no figure is missing
+    return report_write(call->log, o->json,
+                        !whole ? NULL : json_incref(array ? job->reports : json_array_get(job->reports, 0)));
 }
 
 static enum orl_result check_together(const struct orl_log *log, const struct eval_options *o)
@@ -259,18 +266,14 @@ static enum orl_result evaluate_scene(struct job *job)
     if (o->truth)
         ORL_TRY(orl_truth_open(call->log, call->scene, o->truth, &job->truth));
     ORL_TRY(command_device(call));
-    bool array = o->vary || o->methods.count > 1 || orl_names_contain(&o->methods, "all") ||
-                 orl_names_contain(&o->methods, "paired");
-    return o->walk || o->path ? measure_walk(job, array) : measure_heldout(job, array);
+    return measure(job);
 }
 
 static enum orl_result run_eval(struct call *call)
 {
     struct job job = {.call = call, .options = call->options};
     enum orl_result result = evaluate_scene(&job);
-    for (size_t i = 0; job.evals && i < job.choices.count; i++)
-        orl_eval_finish(&job.evals[i]);
-    free(job.evals);
+    json_decref(job.reports);
     orl_choices_finish(&job.choices);
     orl_truth_finish(&job.truth);
     return result;

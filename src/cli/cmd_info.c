@@ -42,11 +42,7 @@ static void print_photos(const struct orl_scene *scene)
 static enum orl_result print_json(const struct orl_log *log, const struct orl_scene *scene)
 {
     json_t *root = orl_scene_info(log, scene);
-    if (!root)
-        return ORL_ERR_FORMAT;
-    char *text = json_dumps(root, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(9));
-    json_decref(root);
-    return report_write(log, "-", text);
+    return root ? report_write(log, "-", root) : ORL_ERR_FORMAT;
 }
 
 // How the scene is drawn unless a command says otherwise.

@@ -47,7 +47,7 @@ static enum orl_result run_plan(struct call *call)
     ORL_TRY(orl_plan(log, call->inputs[0], o->photographs, &plan));
     const json_t *jobs = json_object_get(plan, "jobs");
     if (o->json)
-        result = report_write(log, "-", json_dumps(plan, JSON_INDENT(1) | JSON_ENSURE_ASCII));
+        result = report_write(log, "-", json_incref(plan));
     else if (!json_array_size(jobs))
         printf("%s is whole: there is nothing left to do\n", call->inputs[0]);
     for (size_t i = 0; !o->json && i < ORL_COUNT(kinds); i++)

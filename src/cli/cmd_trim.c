@@ -86,7 +86,8 @@ static enum orl_result run_trim(struct call *call)
     if (result == ORL_OK)
         print_summary(o, &trim);
     if (result == ORL_OK && o->json)
-        result = orl_trim_write_json(call->log, o->json, call->scene, orl_gpu_caps(call->gpu)->renderer, &trim);
+        result = report_write(call->log, o->json,
+                              orl_trim_report(call->scene, orl_gpu_caps(call->gpu)->renderer, &trim));
     orl_trim_finish(&trim);
     return result;
 }

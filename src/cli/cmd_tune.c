@@ -45,7 +45,7 @@ static enum orl_result report(const struct orl_log *log, const struct tune_optio
             printf("--set %s=%.6g\n", key, json_number_value(value));
     enum orl_result result = ORL_OK;
     if (o->json)
-        result = orl_search_write_json(log, o->json, device, search);
+        result = report_write(log, o->json, orl_search_report(search, device));
     if (result == ORL_OK && o->apply)
         result = orl_tuned_write(log, search->scene->dir, method->name, orl_search_record(search));
     json_decref(settings);

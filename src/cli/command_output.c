@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
+#include "core/json.h"
 
 const char *output_tone_name(size_t index)
 {
@@ -59,14 +58,19 @@ bool report_on_stdout(const char *path)
     return path && strcmp(path, "-") == 0;
 }
 
-enum orl_result report_write(const struct orl_log *log, const char *path, char *text)
+static enum orl_result print_report(const struct orl_log *log, const json_t *report)
 {
-    enum orl_result result = ORL_OK;
-    ORL_TRY_MEMORY(text);
-    if (!report_on_stdout(path))
-        result = orl_file_write(log, path, text, strlen(text));
-    else
-        puts(text); // main says what does not arrive
+    char *text = json_dumps(report, JSON_INDENT(1) | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(ORL_JSON_DIGITS));
+    if (!text)
+        return orl_fail(log, ORL_ERR_MEMORY, "no memory for the report");
+    puts(text); // main says what does not arrive
     free(text);
+    return ORL_OK;
+}
+
+enum orl_result report_write(const struct orl_log *log, const char *path, json_t *report)
+{
+    enum orl_result result = report_on_stdout(path) ? print_report(log, report) : orl_json_write(log, path, report);
+    json_decref(report);
     return result;
 }

@@ -67,9 +67,10 @@ struct output_options {
 enum orl_result output_choose(const struct orl_log *log, struct output_options options,
                               bool confidence, struct orl_frame_output *output) ORL_CHECK_RESULT;
 
-// Writes a report to a file or, for "-", to stdout, and releases it. NULL: out of memory.
+// Writes a report to a file or, for "-", to stdout, and releases it. NULL: out of memory, or a figure
+// is no number.
 enum orl_result report_write(const struct orl_log *log, const char *path,
-                             char *text) ORL_CHECK_RESULT;
+                             json_t *report) ORL_CHECK_RESULT;
 // True when the report goes to stdout, so that tables must not be printed there.
 bool report_on_stdout(const char *path);
 

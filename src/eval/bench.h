@@ -81,6 +81,6 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
                               struct orl_bench *bench) ORL_CHECK_RESULT;
 void orl_bench_finish(struct orl_bench *bench);
 
-// The JSON of docs/reference/json.md, released with free().
-char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench);
+// The report (docs/reference/json.md). A new reference; NULL: no memory.
+json_t *orl_bench_report(const struct orl_bench *bench);
 #endif

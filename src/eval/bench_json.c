@@ -1,9 +1,6 @@
 // The benchmark's report (docs/reference/json.md). Field names are fixed.
-#include <jansson.h>
-
 #include "core/json.h"
 #include "eval/bench.h"
-#include "eval/internal.h"
 
 static json_t *passes_json(const struct orl_bench_run *run)
 {
@@ -65,9 +62,9 @@ static json_t *memory_json(const struct orl_bench *bench)
     return array;
 }
 
-char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench)
+json_t *orl_bench_report(const struct orl_bench *bench)
 {
-    json_t *root = json_pack(
+    return json_pack(
         "{s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
         orl_json_string(bench->scene->dir), "device", bench->device, "driver", bench->driver, "software",
         bench->software, "points", (json_int_t)orl_scene_point_count(bench->scene),
@@ -78,5 +75,4 @@ char *orl_bench_to_json(const struct orl_log *log, const struct orl_bench *bench
         runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
         "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
         rasters_json(bench));
-    return orl_reports_to_text(log, root, 0, true, 6);
 }

@@ -3,6 +3,8 @@
 #ifndef ORL_EVAL_EVAL_H
 #define ORL_EVAL_EVAL_H
 
+#include <jansson.h>
+
 #include "oriel/progress.h"
 #include "eval/metrics.h"
 #include "eval/radiance_metrics.h"
@@ -68,9 +70,7 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              struct orl_eval *eval) ORL_CHECK_RESULT;
 void orl_eval_finish(struct orl_eval *eval);
 
-// The JSON of docs/reference/metrics.md: one object, or with `array` an array of `count` objects.
-// The caller releases it with free().
-char *orl_eval_to_json(const struct orl_log *log, const struct orl_eval *evals, size_t count,
-                       bool array);
+// The report (docs/reference/json.md). A new reference; NULL: no memory, or a figure is no number.
+json_t *orl_eval_report(const struct orl_eval *eval);
 
 #endif

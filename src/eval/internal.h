@@ -2,14 +2,8 @@
 #ifndef ORL_EVAL_INTERNAL_H
 #define ORL_EVAL_INTERNAL_H
 
-#include <jansson.h>
-
 #include "eval/eval.h"
 #include "eval/heldout.h"
-
-// Text of an array of `count` reports, or without `array` of its only report, or of an object (count 0).
-// NULL, logged: out of memory (earlier, if reports are missing), or a name is not UTF-8. Takes over `all`.
-char *orl_reports_to_text(const struct orl_log *log, json_t *all, size_t count, bool array, int digits);
 
 // Writes one view's pictures into the existing folder params->image_dir.
 enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,

@@ -193,8 +193,7 @@ json_t *orl_search_record(const struct orl_search *s)
                              s->params.size_divide, s->complete);
 }
 
-enum orl_result orl_search_write_json(const struct orl_log *log, const char *path, const char *device,
-                                      const struct orl_search *s)
+json_t *orl_search_report(const struct orl_search *s, const char *device)
 {
     json_t *root = orl_search_record(s), *trials = json_array();
     for (size_t i = 0; i < s->trial_count; i++) {
@@ -207,9 +206,6 @@ enum orl_result orl_search_write_json(const struct orl_log *log, const char *pat
     json_object_set_new(root, "scene", orl_json_string(s->scene->dir));
     json_object_set_new(root, "method", json_string(s->best.method->name));
     json_object_set_new(root, "device", json_string(device));
-    enum orl_result result = json_object_set_new(root, "trials", trials) == 0
-                                 ? orl_json_write(log, path, root)
-                                 : orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for it", path);
-    json_decref(root);
-    return result;
+    json_object_set_new(root, "trials", trials);
+    return root;
 }

@@ -63,8 +63,7 @@ enum orl_result orl_search_backdrop(const struct orl_log *log, struct orl_render
 
 // What was found as the record that scene.json has under "tuned". A new reference; NULL: no memory.
 json_t *orl_search_record(const struct orl_search *search);
-// Writes the record with all trials (docs/reference/json.md).
-enum orl_result orl_search_write_json(const struct orl_log *log, const char *path, const char *device,
-                                      const struct orl_search *search) ORL_CHECK_RESULT;
+// The same with all trials (docs/reference/json.md).
+json_t *orl_search_report(const struct orl_search *search, const char *device);
 
 #endif

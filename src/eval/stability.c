@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/process.h"
 #include "io/picture.h"
@@ -243,10 +244,9 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
 
 // --- a walk ---
 
-enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_scene *scene,
-                                   size_t frames, int divide, struct orl_path *path)
+static enum orl_result walk_past_photographs(const struct orl_log *log, const struct orl_scene *scene,
+                                             size_t frames, int divide, struct orl_path *path)
 {
-    memset(path, 0, sizeof *path);
     struct orl_scene training = *scene; // only its photographs are replaced; their names and
                                         // the points belong to the scene
     training.photos = orl_array(log, scene->photo_count, sizeof *training.photos);
@@ -266,6 +266,20 @@ enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_s
     return result;
 }
 
+enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_scene *scene, const char *file,
+                                   size_t frames, int divide, struct orl_path *path)
+{
+    memset(path, 0, sizeof *path);
+    if (!file)
+        return walk_past_photographs(log, scene, frames, divide, path);
+    ORL_TRY(orl_path_read(log, scene, file, path));
+    for (size_t i = 0; i < path->count; i++) {
+        struct orl_camera *camera = &path->views[i].camera;
+        *camera = orl_camera_resized(camera, camera->width / divide, camera->height / divide);
+    }
+    return ORL_OK;
+}
+
 static void frame_finish(struct orl_stability_frame *frame)
 {
     orl_image_finish(&frame->srgb);
@@ -279,14 +293,15 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     struct orl_frame frame = {0};
-    *out = (struct orl_stability_frame){.view = params->views[index]};
+    *out = (struct orl_stability_frame){.view = params->path->views[index]};
     const bool *skip = params->skip ? params->skip(params->skip_priv, index) : NULL;
     double start = orl_time_s();
-    enum orl_result result = orl_renderer_draw(renderer, &out->view, params->render, skip, &frame);
+    enum orl_result result = orl_renderer_draw(renderer, &out->view, &params->choice->params, skip, &frame);
     *ms += 1e3 * (orl_time_s() - start);
     ORL_THEN(result, orl_tone_srgb(log, &frame.color, &out->srgb));
     if (result == ORL_OK && params->image_dir)
-        result = orl_png_write(log, ORL_PATH(params->image_dir, "%s.%05zu.png", params->method, index), &out->srgb);
+        result = orl_png_write(log, ORL_PATH(params->image_dir, "%s.%05zu.png", params->choice->method->name, index),
+                               &out->srgb);
     out->depth = frame.depth;
     out->coverage = frame.coverage;
     frame.depth = frame.coverage = (struct orl_image){0};
@@ -318,52 +333,50 @@ static void summarise(struct orl_stability *s, const struct orl_stability_counts
     all->p99 = percentile_99(counts);
 }
 
+static enum orl_result run(struct orl_gpu *gpu, struct orl_renderer *renderer,
+                           const struct orl_stability_params *params, struct orl_stability *out)
+{
+    const struct orl_log *log = orl_gpu_log(gpu);
+    const size_t count = params->path->count;
+    struct orl_stability_frame frames[2] = {0}; // frame i is in frames[i % 2]
+    struct orl_stability_counts counts = {0};
+    enum orl_result result = params->image_dir ? orl_dir_make(log, params->image_dir) : ORL_OK;
+    out->steps = orl_array(log, count - 1, sizeof *out->steps);
+    if (!out->steps)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        orl_progress_report(params->progress, out->method, (double)i, (double)count, NULL);
+        frame_finish(&frames[i % 2]);
+        result = orl_progress_cancelled(params->progress)
+                     ? ORL_ERR_CANCELLED
+                     : draw(gpu, renderer, params, i, &frames[i % 2], &out->render_ms);
+        if (result == ORL_OK && i > 0)
+            result = orl_stability_compare(log, &frames[(i - 1) % 2], &frames[i % 2], &counts,
+                                           &out->steps[out->step_count++]);
+    }
+    frame_finish(&frames[0]);
+    frame_finish(&frames[1]);
+    ORL_TRY(result);
+    orl_progress_report(params->progress, out->method, (double)count, (double)count, NULL);
+    out->render_ms /= (double)count;
+    summarise(out, &counts);
+    return ORL_OK;
+}
+
 enum orl_result orl_stability_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                                   const struct orl_stability_params *params,
                                   struct orl_stability *out)
 {
-    const struct orl_log *log = orl_gpu_log(gpu);
-    struct orl_stability_frame frames[2] = {0}; // frame i is in frames[i % 2]
-    struct orl_stability_counts counts = {0};
-    double ms = 0;
-    memset(out, 0, sizeof *out);
-    if (params->view_count < 2)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "a walk needs two frames");
-    enum orl_result result = ORL_OK;
-    if (params->image_dir)
-        result = orl_dir_make(log, params->image_dir);
-    out->steps = orl_array(log, params->view_count - 1, sizeof *out->steps);
-    if (!out->steps)
-        result = ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < params->view_count; i++) {
-        orl_progress_report(params->progress, params->method, (double)i,
-                            (double)params->view_count, NULL);
-        if (orl_progress_cancelled(params->progress)) {
-            result = ORL_ERR_CANCELLED;
-            break;
-        }
-        frame_finish(&frames[i % 2]);
-        result = draw(gpu, renderer, params, i, &frames[i % 2], &ms);
-        if (result == ORL_OK && i > 0)
-            result = orl_stability_compare(log, &frames[(i - 1) % 2], &frames[i % 2], &counts,
-                                           &out->steps[i - 1]);
-    }
-    frame_finish(&frames[0]);
-    frame_finish(&frames[1]);
-    if (result != ORL_OK) {
-        orl_stability_finish(out);
-        return result;
-    }
-    orl_progress_report(params->progress, params->method, (double)params->view_count,
-                        (double)params->view_count, NULL);
-    out->method = params->method;
-    out->width = params->views[0].camera.width;
-    out->height = params->views[0].camera.height;
-    out->step_count = params->view_count - 1;
-    out->render_ms = ms / (double)params->view_count;
+    *out = (struct orl_stability){.method = params->choice->method->name};
+    if (params->path->count < 2)
+        return orl_fail(orl_gpu_log(gpu), ORL_ERR_ARGUMENT, "a walk needs two frames");
+    out->width = params->path->views[0].camera.width;
+    out->height = params->path->views[0].camera.height;
     snprintf(out->device, sizeof out->device, "%s", orl_gpu_caps(gpu)->renderer);
-    summarise(out, &counts);
-    return ORL_OK;
+    enum orl_result result = run(gpu, renderer, params, out);
+    if (result != ORL_OK)
+        orl_stability_finish(out);
+    return result;
 }
 
 void orl_stability_finish(struct orl_stability *stability)
@@ -372,38 +385,27 @@ void orl_stability_finish(struct orl_stability *stability)
     memset(stability, 0, sizeof *stability);
 }
 
-enum orl_result orl_stability_walk_all(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                                       const struct orl_scene *scene,
-                                       const struct orl_walk_params *params,
-                                       struct orl_stability *results)
+// --- the report ---
+
+static json_t *step_json(const struct orl_stability_step *s)
 {
-    struct orl_path path = {0};
-    size_t done = 0;
-    const struct orl_log *log = orl_gpu_log(gpu);
-    enum orl_result result =
-        params->path ? orl_path_read(log, scene, params->path, &path)
-                     : orl_stability_walk(log, scene, (size_t)params->frames, params->divide, &path);
-    if (result == ORL_OK && path.count < 2)
-        result = orl_fail(log, ORL_ERR_DATA, "%s: a walk needs two views", params->path);
-    for (size_t i = 0; result == ORL_OK && params->path && i < path.count; i++) {
-        struct orl_camera *camera = &path.views[i].camera;
-        *camera = orl_camera_resized(camera, camera->width / params->divide,
-                                     camera->height / params->divide);
-    }
-    for (; result == ORL_OK && done < params->choice_count; done++) {
-        const struct orl_choice *choice = &params->choices[done];
-        const struct orl_stability_params one = {
-            .method = choice->method->name, .render = &choice->params, .views = path.views,
-            .view_count = path.count, .image_dir = params->image_dir,
-            .progress = params->progress};
-        result = orl_stability_run(gpu, renderer, &one, &results[done]);
-        if (result != ORL_OK)
-            break;
-        if (params->on_result)
-            params->on_result(params->priv, &results[done]);
-    }
-    for (size_t i = 0; result != ORL_OK && i < done; i++)
-        orl_stability_finish(&results[i]);
-    orl_path_finish(&path);
-    return result;
+    return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:[ii],s:f}", "compared", s->compared, "mean",
+                     s->mean, "p99", s->p99, "floor", s->floor, "block_mean", s->block_mean,
+                     "block_worst", s->block_worst, "block_at", s->block_x, s->block_y, "jump",
+                     s->jump);
+}
+
+json_t *orl_stability_report(const struct orl_scene *scene, const struct orl_stability *s)
+{
+    json_t *steps = json_array();
+    for (size_t i = 0; steps && i < s->step_count; i++)
+        if (json_array_append_new(steps, step_json(&s->steps[i])) != 0) {
+            json_decref(steps);
+            steps = NULL;
+        }
+    return json_pack("{s:o,s:s,s:s,s:[ii],s:I,s:f,s:I,s:I,s:o,s:o}", "scene", orl_json_string(scene->dir), "method",
+                     s->method, "device", s->device, "size", s->width, s->height, "frames",
+                     (json_int_t)(s->step_count + 1), "render_ms", s->render_ms, "worst_block_step",
+                     (json_int_t)s->worst_block_step, "worst_jump_step",
+                     (json_int_t)s->worst_jump_step, "all", step_json(&s->all), "steps", steps);
 }

@@ -42,10 +42,8 @@ struct orl_stability {
 };
 
 struct orl_stability_params {
-    const char *method; // for reports
-    const struct orl_render_params *render;
-    const struct orl_view *views; // at least two, in the order of the walk
-    size_t view_count;
+    const struct orl_choice *choice;
+    const struct orl_path *path; // at least two views, in the order of the walk
     // Photographs that the renderer may not use in frame i; NULL: it may use all.
     const bool *(*skip)(void *priv, size_t frame);
     void *skip_priv;
@@ -54,30 +52,16 @@ struct orl_stability_params {
 };
 
 // Makes a walk past the photographs that are not held out, in order of name, with pictures of the
-// first photograph's size divided by `divide`.
-enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_scene *scene,
-                                   size_t frames, int divide,
-                                   struct orl_path *path) ORL_CHECK_RESULT;
+// first photograph's size divided by `divide`. file: takes the views of this file (orl_path_read)
+// instead, at their size divided by `divide`; NULL: the walk.
+enum orl_result orl_stability_walk(const struct orl_log *log, const struct orl_scene *scene, const char *file,
+                                   size_t frames, int divide, struct orl_path *path) ORL_CHECK_RESULT;
 enum orl_result orl_stability_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                                   const struct orl_stability_params *params,
                                   struct orl_stability *out) ORL_CHECK_RESULT;
 void orl_stability_finish(struct orl_stability *stability);
-
-struct orl_walk_params {
-    const struct orl_choice *choices;
-    size_t choice_count;
-    int frames, divide;    // as for orl_stability_walk
-    const char *path;      // a file of views (orl_path_read) instead of that walk; NULL: the walk
-    const char *image_dir; // as in struct orl_stability_params
-    void (*on_result)(void *priv, const struct orl_stability *one); // may be NULL
-    void *priv;
-    const struct orl_progress *progress;
-};
-// Measures each choice on the same walk. The caller finishes each of results[choice_count].
-enum orl_result orl_stability_walk_all(struct orl_gpu *gpu, struct orl_renderer *renderer,
-                                       const struct orl_scene *scene,
-                                       const struct orl_walk_params *params,
-                                       struct orl_stability *results) ORL_CHECK_RESULT;
+// The report (docs/reference/json.md). A new reference; NULL: no memory.
+json_t *orl_stability_report(const struct orl_scene *scene, const struct orl_stability *stability);
 
 // One picture of the walk.
 struct orl_stability_frame {
@@ -95,10 +79,5 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
                                       const struct orl_stability_frame *after,
                                       struct orl_stability_counts *counts,
                                       struct orl_stability_step *step) ORL_CHECK_RESULT;
-
-// The JSON of docs/reference/metrics.md: one object, or with `array` an array of `count` objects.
-// The caller releases it with free().
-char *orl_stability_to_json(const struct orl_log *log, const struct orl_scene *scene,
-                            const struct orl_stability *all, size_t count, bool array);
 
 #endif

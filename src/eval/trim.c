@@ -1,7 +1,6 @@
 // oriel trim: the whole scene is measured, the search makes it smaller, and the result is written.
 #include "eval/trim.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -193,20 +192,13 @@ static json_t *step_json(const struct orl_trim_step *s)
                      s->total_loss_ssim);
 }
 
-enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
-                                    const struct orl_scene *scene, const char *device,
-                                    const struct orl_trim *trim)
+json_t *orl_trim_report(const struct orl_scene *scene, const char *device, const struct orl_trim *trim)
 {
     json_t *steps = json_array();
     for (size_t i = 0; i < trim->step_count; i++)
         json_array_append_new(steps, step_json(&trim->steps[i]));
-    json_t *root = json_pack(
-        "{s:o, s:s, s:s, s:o, s:o, s:o, s:b, s:I, s:o}", "scene", orl_json_string(scene->dir),
-        "device", device, "method", trim->choice.method->name, "settings",
-        orl_choice_settings(&trim->choice), "before",
-        figures_json(&trim->before), "after", figures_json(&trim->after), "complete",
-        trim->complete, "undone", (json_int_t)trim->undone, "steps", steps);
-    enum orl_result result = orl_json_write(log, path, root);
-    json_decref(root);
-    return result;
+    return json_pack("{s:o, s:s, s:s, s:o, s:o, s:o, s:b, s:I, s:o}", "scene", orl_json_string(scene->dir), "device",
+                     device, "method", trim->choice.method->name, "settings", orl_choice_settings(&trim->choice),
+                     "before", figures_json(&trim->before), "after", figures_json(&trim->after), "complete",
+                     trim->complete, "undone", (json_int_t)trim->undone, "steps", steps);
 }

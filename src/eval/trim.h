@@ -75,8 +75,6 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                              struct orl_trim *trim) ORL_CHECK_RESULT;
 void orl_trim_finish(struct orl_trim *trim);
 
-// The report as JSON (docs/reference/json.md).
-enum orl_result orl_trim_write_json(const struct orl_log *log, const char *path,
-                                    const struct orl_scene *scene, const char *device,
-                                    const struct orl_trim *trim) ORL_CHECK_RESULT;
+// The report (docs/reference/json.md). A new reference; NULL: no memory.
+json_t *orl_trim_report(const struct orl_scene *scene, const char *device, const struct orl_trim *trim);
 #endif

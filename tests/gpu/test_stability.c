@@ -174,16 +174,15 @@ static struct orl_stability walk(struct fixture *f, const char *method, bool sti
     bool skip[PHOTOS] = {false};
     const struct orl_method *row = orl_method_find(NULL, method);
     assert_non_null(row);
-    assert_int_equal(orl_stability_walk(NULL, &f->scene, FRAMES, 1, &path), ORL_OK);
+    assert_int_equal(orl_stability_walk(NULL, &f->scene, NULL, FRAMES, 1, &path), ORL_OK);
     assert_int_equal(path.count, FRAMES);
     for (size_t i = 0; still && i < FRAMES; i++)
         path.views[i] = look(0.02);
     assert_int_equal(orl_renderer_create(gpu, &f->scene, NULL, &renderer), ORL_OK);
-    struct orl_render_params render;
-    orl_render_params_tuned(NULL, row, &f->scene, &render);
+    struct orl_choice choice = {.method = row};
+    orl_render_params_tuned(NULL, row, &f->scene, &choice.params);
     const struct orl_stability_params params = {
-        .method = method, .render = &render, .views = path.views, .view_count = FRAMES,
-        .skip = pops ? half_way : NULL, .skip_priv = skip};
+        .choice = &choice, .path = &path, .skip = pops ? half_way : NULL, .skip_priv = skip};
     assert_int_equal(orl_stability_run(gpu, renderer, &params, &s), ORL_OK);
     assert_int_equal(s.step_count, FRAMES - 1);
     assert_true(s.all.compared > 0.6);
@@ -244,7 +243,7 @@ static void walks_past_training_photographs(void **state)
     setup_walk(&f, (uint8_t[]){100, 100, 100});
     f.photos[1].test = true;
     f.photos[1].view = look(50);
-    assert_int_equal(orl_stability_walk(NULL, &f.scene, 5, 2, &path), ORL_OK);
+    assert_int_equal(orl_stability_walk(NULL, &f.scene, NULL, 5, 2, &path), ORL_OK);
     for (size_t i = 0; i < path.count; i++) {
         double centre[3];
         orl_pose_centre(&path.views[i].cam_from_world, centre);
@@ -254,7 +253,7 @@ static void walks_past_training_photographs(void **state)
     }
     orl_path_finish(&path);
     f.photos[0].test = true;
-    assert_int_equal(orl_stability_walk(NULL, &f.scene, 5, 1, &path), ORL_ERR_ARGUMENT);
+    assert_int_equal(orl_stability_walk(NULL, &f.scene, NULL, 5, 1, &path), ORL_ERR_ARGUMENT);
     teardown(&f);
 }
 
