@@ -173,33 +173,27 @@ static enum orl_result add_all_far(struct refine *r, struct orl_gpu *gpu)
 
 // --- how much of them ---
 
-// Of the shares, the one for `option` of `render` with which the checks come out best, if that is better than 0; *best
-// is the score so far.
+// Of the shares, the one for `option` of `render` with which the checks come out best, if that is better than 0.
+// psnr_db: means with 0 and with the one that was found.
 static enum orl_result find_share(const struct refine *r, struct orl_renderer *renderer,
                                   const struct orl_validation *checks, struct orl_render_params *render, float *option,
-                                  size_t count, struct orl_score *best)
+                                  size_t count, double psnr_db[2])
 {
-    struct orl_score none = *best;
+    struct orl_score scores[1 + ORL_COUNT(SHARES)] = {{0}}; // the first: with 0
     enum orl_result result = ORL_OK;
-    float found = 0;
-    *best = (struct orl_score){.psnr_db = none.psnr_db};
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        struct orl_score score = {0};
-        *option = SHARES[i];
-        result = orl_score_measure(r->log, renderer, checks, render, r->params->progress, &score);
-        if (result == ORL_OK && score.psnr_db > best->psnr_db && orl_score_better(&score, &none, GAIN_DB)) {
-            struct orl_score worse = *best;
-            *best = score;
-            score = worse;
-            found = SHARES[i];
-        }
-        orl_score_finish(&score);
+    size_t best = 0;
+    for (size_t i = 0; result == ORL_OK && i <= count; i++) {
+        *option = i ? SHARES[i - 1] : 0;
+        result = orl_score_measure(r->log, renderer, checks, render, r->params->progress, &scores[i]);
+        if (result == ORL_OK && scores[i].psnr_db > scores[best].psnr_db &&
+            orl_score_better(&scores[i], &scores[0], GAIN_DB))
+            best = i;
     }
-    *option = found;
-    if (found > 0)
-        orl_score_finish(&none);
-    else
-        *best = none;
+    *option = best ? SHARES[best - 1] : 0;
+    psnr_db[0] = scores[0].psnr_db;
+    psnr_db[1] = scores[best].psnr_db;
+    for (size_t i = 0; i <= count; i++)
+        orl_score_finish(&scores[i]);
     return result;
 }
 
@@ -208,22 +202,21 @@ static enum orl_result find_shares(struct refine *r, struct orl_gpu *gpu, struct
 {
     struct orl_validation checks = {0};
     struct orl_renderer *renderer = NULL;
-    struct orl_score best = {0};
     struct orl_render_params render = r->params->choice.params;
+    double soft_db[2] = {0}, mix_db[2] = {0};
     enum orl_result result = orl_validation_load(r->log, r->scene, r->checks, r->params->size_divide, &checks);
     const struct orl_renderer_params limits = {.max_vram_bytes = r->params->max_vram_bytes};
     ORL_THEN(result, orl_renderer_create(gpu, r->scene, &limits, &renderer));
     render.soft = render.soft_mix = 0;
-    ORL_THEN(result, orl_score_measure(r->log, renderer, &checks, &render, r->params->progress, &best));
+    ORL_THEN(result, find_share(r, renderer, &checks, &render, &render.soft, ORL_COUNT(SHARES), soft_db));
+    bool mixes = result == ORL_OK && render.soft > 0;
+    if (mixes)
+        result = find_share(r, renderer, &checks, &render, &render.soft_mix, MIX_SHARES, mix_db);
     report->checks = checks.count;
-    report->before_psnr_db = best.psnr_db;
-    ORL_THEN(result, find_share(r, renderer, &checks, &render, &render.soft, ORL_COUNT(SHARES), &best));
-    if (result == ORL_OK && render.soft > 0)
-        result = find_share(r, renderer, &checks, &render, &render.soft_mix, MIX_SHARES, &best);
     report->share = (double)render.soft;
     report->mix_share = (double)render.soft_mix;
-    report->psnr_db = best.psnr_db;
-    orl_score_finish(&best);
+    report->before_psnr_db = soft_db[0];
+    report->psnr_db = mixes ? mix_db[1] : soft_db[1];
     orl_renderer_destroy(&renderer);
     orl_validation_finish(&checks);
     return result;
