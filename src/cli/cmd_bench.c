@@ -1,66 +1,16 @@
 // oriel bench: what a frame costs, in time by pass and in memory by owner.
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/bench.h"
 
-enum { SIZES_MAX = 8, POINTS_MAX = 16 };
-
 #define BENCH_OPTIONS(ROW) \
     ROW(methods, "method", LIST("NAME"), "methods, or all; default: the scene's, or the first") \
     ROW(settings, "set", LIST("KEY=VALUE"), "change an option of the methods") \
-    ROW(sizes, "size", LIST("WxH"), "of the picture; default: 512x512 and 1024x1024") \
-    ROW(points, "points", LIST("N,N,.."), \
-        "numbers of points to try; beyond the scene's, points are split") \
-    ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "for each median, about") \
-    ROW(frames, "frames", INT(100, 3, 100000, "N"), "for each median, at most") \
-    ROW(quick, "quick", FLAG, "sizes only: no growth, no GL_POINTS") \
-    ROW(json, "json", TEXT("FILE"), "write the figures as JSON; - for stdout") \
-    ROW(trace, "trace", TEXT("FILE"), "write a few frames for chrome://tracing or ui.perfetto.dev") \
-    ROW(images, "images", TEXT("DIR"), "write pictures") \
-    TEXTURES_OPTION(ROW) \
-    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
+    ORL_BENCH_OPTIONS(ROW) \
+    ROW(json, "json", TEXT("FILE"), "write the figures as JSON; - for stdout")
 COMMAND_OPTIONS(bench_options, BENCH_OPTIONS)
-
-// The options as parameters of the library.
-struct plan {
-    struct orl_choices choices;
-    struct orl_size sizes[SIZES_MAX];
-    size_t size_count;
-    size_t points[POINTS_MAX];
-};
-
-static enum orl_result plan_sizes(const struct orl_log *log, const struct bench_options *o,
-                                  struct plan *plan)
-{
-    static const struct orl_size usual[] = {{512, 512}, {1024, 1024}};
-    if (o->sizes.count > SIZES_MAX)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--size: at most %d", SIZES_MAX);
-    memcpy(plan->sizes, usual, sizeof usual);
-    plan->size_count = o->sizes.count ? o->sizes.count : ORL_COUNT(usual);
-    for (size_t i = 0; i < o->sizes.count; i++)
-        ORL_TRY(orl_size_parse(log, "size", o->sizes.items[i], &plan->sizes[i]));
-    return ORL_OK;
-}
-
-static enum orl_result plan_points(const struct orl_log *log, const struct bench_options *o,
-                                   struct plan *plan)
-{
-    if (o->points.count > POINTS_MAX)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--points: at most %d", POINTS_MAX);
-    for (size_t i = 0; i < o->points.count; i++) {
-        char *end;
-        double value = strtod(o->points.items[i], &end);
-        if (*end || !(value >= 1 && value <= 1e9))
-            return orl_fail(log, ORL_ERR_ARGUMENT, "--points %s: must be a number from 1 to 1e9",
-                            o->points.items[i]);
-        plan->points[i] = (size_t)value;
-    }
-    return ORL_OK;
-}
 
 // --- tables on stdout ---
 
@@ -160,29 +110,18 @@ static enum orl_result report(const struct orl_log *log, const struct bench_opti
 static enum orl_result run_bench(struct call *call)
 {
     const struct bench_options *o = call->options;
-    const struct orl_log *log = call->log;
-    struct plan plan = {0};
+    struct orl_choices choices = {0};
     struct orl_bench bench = {0};
-    enum orl_result result = plan_sizes(log, o, &plan);
-    ORL_THEN(result, plan_points(log, o, &plan));
-    ORL_THEN(result, command_scene(call, NULL));
-    ORL_THEN(result, orl_choices_make(log, call->scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
-                                      &plan.choices));
+    const struct orl_bench_params params = {ORL_BENCH_OPTIONS(ORL_OPTION_COPY) .choices = &choices,
+                                            .progress = call->progress};
+    enum orl_result result = command_scene(call, NULL);
+    ORL_THEN(result, orl_choices_make(call->log, call->scene, ORL_SAMPLE_SRGB, &o->methods, &o->settings, NULL,
+                                      &choices));
     ORL_THEN(result, command_device(call));
-    const struct orl_bench_params params = {
-        .choices = plan.choices.items, .choice_count = plan.choices.count,
-        .sizes = plan.sizes, .size_count = plan.size_count,
-        .points = o->points.count ? plan.points : NULL, .points_count = o->points.count,
-        .seconds = o->seconds,
-        .frames_max = (size_t)o->frames, .growth = !o->quick,
-        .max_vram_bytes = o->max_vram_bytes,
-        .textures = o->textures,
-        .image_dir = o->images, .trace = o->trace,
-        .progress = call->progress};
     ORL_THEN(result, orl_bench_run(call->gpu, call->scene, &params, &bench));
-    ORL_THEN(result, report(log, o, &bench));
+    ORL_THEN(result, report(call->log, o, &bench));
     orl_bench_finish(&bench);
-    orl_choices_finish(&plan.choices);
+    orl_choices_finish(&choices);
     return result;
 }
 

@@ -6,7 +6,9 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "core/arguments.h"
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/order.h"
 #include "eval/bench_internal.h"
@@ -14,7 +16,7 @@
 #include "io/picture.h"
 #include "scene/info.h"
 
-enum { DOUBLINGS = 8 * sizeof(size_t), RESOLUTIONS = 4 };
+enum { DIVIDE_MAX = 8 }; // of the photographs' size
 
 const char *const orl_bench_kind_names[ORL_BENCH_KIND_COUNT] = {
     [ORL_BENCH_SIZES] = "picture", [ORL_BENCH_PHOTOGRAPHS] = "photographs",
@@ -42,56 +44,82 @@ double orl_bench_splat_ms(const struct orl_bench_run *run)
 // --- the list ---
 
 // Adds the configuration once for each method.
-static void add_runs(struct bench_job *job, struct orl_bench_run run)
+static enum orl_result add_runs(struct bench_job *job, struct orl_bench_run run)
 {
-    for (size_t m = 0; m < job->params->choice_count; m++) {
-        run.method = job->params->choices[m].method->name;
-        job->bench->runs[job->bench->run_count++] = run;
+    struct orl_bench *bench = job->bench;
+    for (size_t m = 0; m < job->params->choices->count; m++) {
+        ORL_TRY(ORL_GROW(job->log, bench->runs, bench->run_capacity, bench->run_count));
+        run.method = job->params->choices->items[m].method->name;
+        bench->runs[bench->run_count++] = run;
     }
+    return ORL_OK;
 }
 
-static void list_growth(struct bench_job *job, struct orl_bench_run run, const size_t *points,
-                        size_t points_count)
+static enum orl_result list_sizes(struct bench_job *job, struct orl_bench_run run)
 {
-    size_t photographs = run.photographs, all = run.points;
-    bool hull = photographs > 1 && orl_scene_silhouettes(job->bench->scene); // needs two
-    run.kind = ORL_BENCH_PHOTOGRAPHS;
-    for (run.photographs = hull ? 2 : 1; run.photographs < photographs; run.photographs *= 2)
-        add_runs(job, run);
-    run.photographs = photographs;
-    add_runs(job, run);
-    run.kind = ORL_BENCH_POINTS;
-    for (size_t i = 0; all && i < points_count; i++) {
-        run.points = points[i];
-        if (points[i] && (i == 0 || points[i] != points[i - 1]))
-            add_runs(job, run);
+    static const char *const usual[] = {"512x512", "1024x1024"};
+    const struct orl_names *asked = &job->params->sizes;
+    size_t count = asked->count ? asked->count : ORL_COUNT(usual);
+    run.kind = ORL_BENCH_SIZES;
+    for (size_t i = 0; i < count; i++) {
+        ORL_TRY(orl_size_parse(job->log, "size", asked->count ? asked->items[i] : usual[i], &run.size));
+        ORL_TRY(add_runs(job, run));
     }
-    run.points = all;
+    return ORL_OK;
+}
+
+static enum orl_result list_photographs(struct bench_job *job, struct orl_bench_run run)
+{
+    size_t all = run.photographs;
+    bool hull = all > 1 && orl_scene_silhouettes(job->bench->scene); // needs two
+    run.kind = ORL_BENCH_PHOTOGRAPHS;
+    for (run.photographs = hull ? 2 : 1; run.photographs < all; run.photographs *= 2)
+        ORL_TRY(add_runs(job, run));
+    run.photographs = all;
+    return add_runs(job, run);
+}
+
+// As many as are asked for, or parts of the scene's points and a million.
+static enum orl_result list_points(struct bench_job *job, struct orl_bench_run run)
+{
+    const struct orl_names *asked = &job->params->points;
+    size_t usual[] = {run.points / 8, run.points / 4, run.points / 2, run.points, 1000000}, last = 0;
+    size_t count = run.points == 0 ? 0 : asked->count ? asked->count : ORL_COUNT(usual);
+    qsort(usual, ORL_COUNT(usual), sizeof *usual, orl_order_sizes);
+    run.kind = ORL_BENCH_POINTS;
+    for (size_t i = 0; i < count; i++) {
+        char *end = (char[]){""};
+        double value = asked->count ? strtod(asked->items[i], &end) : (double)usual[i];
+        if (asked->count && (*end || !(value >= 1 && value <= 1e9)))
+            return orl_fail(job->log, ORL_ERR_ARGUMENT, "--points %s: must be a number from 1 to 1e9", asked->items[i]);
+        run.points = (size_t)value;
+        if (run.points != last)
+            ORL_TRY(add_runs(job, run));
+        last = run.points;
+    }
+    return ORL_OK;
+}
+
+static enum orl_result list_resolutions(struct bench_job *job, struct orl_bench_run run)
+{
     run.kind = ORL_BENCH_RESOLUTION;
-    for (int i = 0; i < RESOLUTIONS; i++, run.photo_divide *= 2)
-        add_runs(job, run);
+    for (run.photo_divide = 1; run.photo_divide <= DIVIDE_MAX; run.photo_divide *= 2)
+        ORL_TRY(add_runs(job, run));
+    return ORL_OK;
 }
 
 static enum orl_result list_runs(struct bench_job *job)
 {
-    const struct orl_bench_params *params = job->params;
     struct orl_bench_run run = {.photographs = job->bench->photographs,
                                 .points = job->bench->scene->points.count, .photo_divide = 1};
-    size_t usual[] = {run.points / 8, run.points / 4, run.points / 2, run.points, 1000000};
-    qsort(usual, ORL_COUNT(usual), sizeof *usual, orl_order_sizes);
-    const size_t *points = params->points ? params->points : usual;
-    size_t points_count = params->points ? params->points_count : ORL_COUNT(usual);
-    size_t most = params->size_count + DOUBLINGS + points_count + RESOLUTIONS;
-    job->bench->runs = orl_array(job->log, params->choice_count * most, sizeof *job->bench->runs);
-    ORL_TRY_MEMORY(job->bench->runs);
-    for (size_t i = 0; i < params->size_count; i++) {
-        run.size = params->sizes[i];
-        add_runs(job, run);
-    }
-    run.size = params->sizes[0];
-    if (params->growth)
-        list_growth(job, run, points, points_count);
-    return ORL_OK;
+    ORL_TRY(list_sizes(job, run));
+    run.size = job->bench->runs[0].size;
+    job->size_runs = job->bench->run_count;
+    if (job->params->quick)
+        return ORL_OK;
+    ORL_TRY(list_photographs(job, run));
+    ORL_TRY(list_points(job, run));
+    return list_resolutions(job, run);
 }
 
 // --- one configuration ---
@@ -106,13 +134,13 @@ static enum orl_result compare_resolution(struct bench_job *job, struct orl_rend
     struct orl_metrics metrics = {0};
     struct orl_view view = orl_bench_view(job, 0, run->size);
     enum orl_result result =
-        orl_renderer_draw(renderer, &view, &job->params->choices[0].params, NULL, &frame);
+        orl_renderer_draw(renderer, &view, &job->params->choices->items[0].params, NULL, &frame);
     ORL_THEN(result, orl_tone_srgb(job->log, &frame.color, &picture));
     if (result == ORL_OK && job->best.u8)
         result = orl_metrics_compare(job->log, &picture, &job->best, &frame.coverage, &metrics);
     run->psnr_db = metrics.psnr_db;
-    if (result == ORL_OK && job->params->image_dir)
-        result = orl_png_write(job->log, ORL_PATH(job->params->image_dir, "photographs_1of%d.png", run->photo_divide),
+    if (result == ORL_OK && job->params->images)
+        result = orl_png_write(job->log, ORL_PATH(job->params->images, "photographs_1of%d.png", run->photo_divide),
                                &picture);
     if (result == ORL_OK && !job->best.u8) {
         job->best = picture;
@@ -128,14 +156,14 @@ static enum orl_result measure_run(struct bench_job *job, struct orl_renderer *r
                                    size_t index)
 {
     struct orl_bench *bench = job->bench;
-    const struct orl_choice *choices = job->params->choices;
+    const struct orl_choices *choices = job->params->choices;
     struct orl_bench_run *run = &bench->runs[index];
     char varied[32], what[64];
     orl_bench_run_print(run, varied);
     snprintf(what, sizeof what, "%s %s", orl_bench_kind_names[run->kind], varied);
     orl_progress_report(job->params->progress, "bench", (double)index, (double)bench->run_count,
                         what);
-    ORL_TRY(orl_bench_measure(job, renderer, &choices[index % job->params->choice_count].params, run));
+    ORL_TRY(orl_bench_measure(job, renderer, &choices->items[index % choices->count].params, run));
     if (index > 0)
         return ORL_OK;
     bench->memory_count = orl_gpu_memory(job->gpu, bench->memory, ORL_BENCH_MEMORY_MAX);
@@ -170,7 +198,7 @@ static enum orl_result measure_runs(struct bench_job *job, size_t first, size_t 
     for (size_t i = first; result == ORL_OK && i < end; i++)
         result = measure_run(job, renderer, i);
     if (result == ORL_OK && first == 0 && job->params->trace)
-        result = orl_bench_trace(job, renderer, &job->params->choices[0].params, run);
+        result = orl_bench_trace(job, renderer, &job->params->choices->items[0].params, run);
     orl_renderer_destroy(&renderer);
     if (result == ORL_OK && run->kind == ORL_BENCH_POINTS)
         result = orl_bench_measure_raster(job, run);
@@ -205,8 +233,7 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
                               const struct orl_bench_params *params, struct orl_bench *bench)
 {
     struct bench_job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = params, .bench = bench};
-    ORL_REQUIRE(job.log, params->size_count > 0 && params->choice_count > 0);
-    ORL_REQUIRE(job.log, params->frames_max >= ORL_TIMING_FRAMES_MIN);
+    ORL_REQUIRE(job.log, params->choices->count > 0);
     memset(bench, 0, sizeof *bench);
     bench->scene = scene;
     describe(&job);
@@ -214,11 +241,11 @@ enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene
         return orl_fail(job.log, ORL_ERR_DATA, "%s: all photographs are held out", scene->dir);
     orl_bench_choose_views(&job);
     enum orl_result result = list_runs(&job);
-    if (result == ORL_OK && params->image_dir)
-        result = orl_dir_make(job.log, params->image_dir);
+    if (result == ORL_OK && params->images)
+        result = orl_dir_make(job.log, params->images);
     // The sizes come first, and share a renderer.
     for (size_t first = 0, end; result == ORL_OK && first < bench->run_count; first = end) {
-        end = first + params->choice_count * (first == 0 ? params->size_count : 1);
+        end = first == 0 ? job.size_runs : first + params->choices->count;
         result = measure_runs(&job, first, end);
     }
     orl_image_finish(&job.best);
@@ -239,4 +266,81 @@ void orl_bench_finish(struct orl_bench *bench)
         return;
     free(bench->runs);
     memset(bench, 0, sizeof *bench);
+}
+
+// --- the report: field names are fixed ---
+
+static json_t *passes_json(const struct orl_bench_run *run)
+{
+    json_t *passes = json_object();
+    for (size_t i = 0; i < run->timing.pass_count; i++) {
+        const struct orl_timing_pass *pass = &run->timing.passes[i];
+        json_object_set_new(passes, pass->name, json_real(pass->ms));
+    }
+    return passes;
+}
+
+static json_t *run_json(const struct orl_bench_run *run)
+{
+    json_t *object = json_pack(
+        "{s:s, s:[i,i], s:I, s:I, s:i, s:I, s:f, s:f, s:f, s:f, s:I, s:I, s:o}", "method", run->method,
+        "size", run->size.width, run->size.height, "photographs", (json_int_t)run->photographs, "points",
+        (json_int_t)run->points, "photo_divide", run->photo_divide, "frames",
+        (json_int_t)run->timing.frames, "frame_ms", run->timing.median_ms, "slowest_ms",
+        run->timing.slowest_ms, "cpu_ms", run->timing.cpu_ms, "fps",
+        run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, "device_bytes",
+        (json_int_t)run->device_bytes, "uploaded_bytes", (json_int_t)run->uploaded_bytes,
+        "passes_ms", passes_json(run));
+    if (run->psnr_db > 0)
+        json_object_set_new(object, "psnr_db", json_real(run->psnr_db));
+    return object;
+}
+
+static json_t *runs_json(const struct orl_bench *bench, enum orl_bench_kind kind)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < bench->run_count; i++)
+        if (bench->runs[i].kind == kind)
+            json_array_append_new(array, run_json(&bench->runs[i]));
+    return array;
+}
+
+static json_t *rasters_json(const struct orl_bench *bench)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < bench->run_count; i++) {
+        const struct orl_bench_run *r = &bench->runs[i];
+        if (r->gl_points_frames)
+            json_array_append_new(array, json_pack(
+                "{s:I, s:[i,i], s:I, s:f, s:f}", "points", (json_int_t)r->points, "size",
+                r->size.width, r->size.height, "frames", (json_int_t)r->gl_points_frames,
+                "splat_ms", orl_bench_splat_ms(r), "gl_points_ms", r->gl_points_ms));
+    }
+    return array;
+}
+
+static json_t *memory_json(const struct orl_bench *bench)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < bench->memory_count; i++)
+        json_array_append_new(array, json_pack(
+            "{s:s, s:s, s:I, s:I}", "owner", orl_owner_names[bench->memory[i].owner],
+            "tag", bench->memory[i].tag, "bytes", (json_int_t)bench->memory[i].bytes, "objects",
+            (json_int_t)bench->memory[i].objects));
+    return array;
+}
+
+json_t *orl_bench_report(const struct orl_bench *bench)
+{
+    return json_pack(
+        "{s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        orl_json_string(bench->scene->dir), "device", bench->device, "driver", bench->driver, "software",
+        bench->software, "points", (json_int_t)orl_scene_point_count(bench->scene),
+        "time_steps", (json_int_t)bench->scene->frame_count, "photographs", (json_int_t)bench->photographs,
+        "photo_size", bench->photo_width, bench->photo_height,
+        "host_peak_bytes", (json_int_t)bench->host_peak_bytes, "memory", memory_json(bench),
+        "sizes", runs_json(bench, ORL_BENCH_SIZES), "by_photographs",
+        runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
+        "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
+        rasters_json(bench));
 }

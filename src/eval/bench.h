@@ -43,21 +43,22 @@ void orl_bench_run_print(const struct orl_bench_run *run, char text[32]);
 // Time of all splatting passes of a frame.
 double orl_bench_splat_ms(const struct orl_bench_run *run);
 
+// Growth is measured at the first size.
+#define ORL_BENCH_OPTIONS(ROW) \
+    ROW(sizes, "size", LIST("WxH"), "of the picture; default: 512x512 and 1024x1024") \
+    ROW(points, "points", LIST("N,N,.."), \
+        "numbers of points to try; beyond the scene's, points are split; default: parts of the scene's, and a million") \
+    ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "for each median, about") \
+    ROW(frames, "frames", INT(100, ORL_TIMING_FRAMES_MIN, 100000, "N"), "for each median, at most") \
+    ROW(quick, "quick", FLAG, "sizes only: no growth, no GL_POINTS") \
+    ROW(trace, "trace", TEXT("FILE"), "write a few frames for chrome://tracing or ui.perfetto.dev") \
+    ROW(images, "images", TEXT("DIR"), "write pictures at each resolution of the photographs") \
+    ROW(textures, "textures", CHOICE(orl_textures, ORL_TEXTURES, ORL_TEXTURES_AUTO, "KIND"), \
+        "photographs on the device") \
+    ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 struct orl_bench_params {
-    const struct orl_choice *choices;
-    size_t choice_count;
-    const struct orl_size *sizes; // growth is measured at the first size
-    size_t size_count;
-    const size_t *points; // for growth with points; NULL: an eighth, a quarter, half and all of the
-                          // scene's, and a million
-    size_t points_count;
-    double seconds;        // approximate duration of the frames behind each median
-    size_t frames_max;     // greatest number of frames behind each median
-    bool growth;           // measures growth with photographs, points and resolution, and GL_POINTS
-    size_t max_vram_bytes;
-    enum orl_textures textures;
-    const char *image_dir; // folder for pictures at each resolution of the photographs; NULL: none
-    const char *trace;     // file for a trace of some frames; NULL: none
+    ORL_BENCH_OPTIONS(ORL_OPTION_MEMBER)
+    const struct orl_choices *choices; // at least one
     const struct orl_progress *progress;
 };
 
@@ -69,13 +70,14 @@ struct orl_bench {
     int photo_width, photo_height; // largest
     size_t host_peak_bytes;
     struct orl_bench_run *runs; // owned, kind by kind
-    size_t run_count;
+    size_t run_count, run_capacity;
     struct orl_gpu_memory memory[ORL_BENCH_MEMORY_MAX]; // of the first run
     size_t memory_count;
 };
 
 // Renders fixed views between neighbouring photographs, without using held-out photographs, of a
-// sequence a time step a frame. Creates its own renderers, one after another.
+// sequence a time step a frame. Creates its own renderers, one after another. ORL_ERR_ARGUMENT: a text
+// among the sizes or points is none.
 enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_bench_params *params,
                               struct orl_bench *bench) ORL_CHECK_RESULT;

@@ -1,4 +1,4 @@
-// Private to the benchmark: its parts in bench_*.c.
+// Private to the benchmark: what bench_measure.c does for bench.c.
 #ifndef ORL_EVAL_BENCH_INTERNAL_H
 #define ORL_EVAL_BENCH_INTERNAL_H
 
@@ -12,11 +12,10 @@ struct bench_job {
     struct orl_scene *scene; // the run's: with its points, and at the time step that is shown
     const struct orl_bench_params *params;
     struct orl_bench *bench;
+    size_t size_runs; // the first ones, which differ in the picture's size and the method alone
     struct orl_view views[BENCH_VIEWS]; // with the photographs' cameras
     struct orl_image best; // owned: the picture of full-size photographs
 };
-
-// --- bench_scene.c: views, and the scene with more or fewer points ---
 
 // Chooses views between neighbouring photographs, spread over the scene.
 void orl_bench_choose_views(struct bench_job *job);
@@ -26,8 +25,6 @@ struct orl_view orl_bench_view(const struct bench_job *job, size_t number, struc
 // smaller ones on its disc. The caller owns the result.
 enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_points *all,
                                    size_t count, struct orl_points *points);
-
-// --- bench_measure.c: medians ---
 
 // Fills times and bytes of `run`, whose configuration is set, by drawing with `renderer`.
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
