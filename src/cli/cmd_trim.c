@@ -6,22 +6,8 @@
 #include "eval/trim.h"
 
 #define TRIM_OPTIONS(ROW) \
-    ROW(out, "out", NEEDED("SCENE2"), "the folder to make") \
-    ROW(tolerance_db, "tolerance", NUMBER(0.1, 0, 100, "DB"), \
-        "training photographs may lose so much on average") \
-    ROW(tolerance_ssim, "tolerance-ssim", NUMBER(0.01, 0, 1, "SHARE"), \
-        "and so much of SSIM, which sees blur that PSNR does not") \
-    ROW(worst_db, "worst", NUMBER(0.5, 0, 100, "DB"), "and one of them so much") \
-    ROW(max_mib, "max-bytes", NUMBER(0, 0.001, 1 << 20, "MIB"), \
-        "instead: the best picture within so much device memory for points and photographs") \
-    ROW(max_frame_ms, "max-frame-ms", NUMBER(0, 0.001, 1e6, "MS"), \
-        "instead: the best picture within so long a frame; with --max-bytes, both") \
+    ORL_TRIM_OPTIONS(ROW) \
     METHOD_OPTIONS(ROW) \
-    ROW(keep_options, "keep-options", FLAG, "do not tune the method's options first") \
-    ROW(views, "views", INT(6, 2, 64, "N"), "photographs that decide on each step") \
-    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
-    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
-        "try nothing new after so long, by the clock; default: no limit") \
     ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON")
 COMMAND_OPTIONS(trim_options, TRIM_OPTIONS)
 
@@ -73,13 +59,9 @@ static enum orl_result run_trim(struct call *call)
     ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start));
     start.params.soft = 0; // soft splats have seen the photographs that decide
     ORL_THEN(result, command_device(call));
-    const struct orl_trim_params params = {
-        .start = &start, .out = o->out, .tolerance_db = o->tolerance_db,
-        .tolerance_ssim = o->tolerance_ssim, .worst_db = o->worst_db,
-        .max_bytes = (size_t)(o->max_mib * MIB), .max_frame_ms = o->max_frame_ms,
-        .views = (size_t)o->views, .size_divide = o->size_divide, .budget_s = o->budget_s,
-        .tune = !o->keep_options,
-        .on_step = call->common->quiet ? NULL : print_step, .progress = call->progress};
+    const struct orl_trim_params params = {ORL_TRIM_OPTIONS(ORL_OPTION_COPY) .start = &start,
+                                           .on_step = call->common->quiet ? NULL : print_step,
+                                           .progress = call->progress};
     if (result == ORL_OK && !call->common->quiet)
         printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
     ORL_THEN(result, orl_trim_run(call->gpu, call->scene, &params, &trim));

@@ -47,7 +47,7 @@ double orl_bench_splat_ms(const struct orl_bench_run *run);
 #define ORL_BENCH_OPTIONS(ROW) \
     ROW(sizes, "size", LIST("WxH"), "of the picture; default: 512x512 and 1024x1024") \
     ROW(points, "points", LIST("N,N,.."), \
-        "numbers of points to try; beyond the scene's, points are split; default: parts of the scene's, and a million") \
+        "numbers of points to try; beyond the scene's, points are split; default: parts of them, and a million") \
     ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "for each median, about") \
     ROW(frames, "frames", INT(100, ORL_TIMING_FRAMES_MIN, 100000, "N"), "for each median, at most") \
     ROW(quick, "quick", FLAG, "sizes only: no growth, no GL_POINTS") \

@@ -72,7 +72,7 @@ static enum orl_result start(struct trim_search *s)
     const struct orl_trim_params *p = s->params;
     ORL_TRY(orl_validation_load(s->log, s->scene, 0, p->size_divide, &s->targets));
     s->deciding_count = s->targets.count < DECIDING_MAX ? s->targets.count : DECIDING_MAX;
-    s->validation_count = p->views && p->views < s->deciding_count ? p->views : s->deciding_count;
+    s->validation_count = (size_t)p->views < s->deciding_count ? (size_t)p->views : s->deciding_count;
     s->most = orl_trim_has_budget(s)
                   ? (struct trim_loss){INFINITY, INFINITY, INFINITY}
                   : (struct trim_loss){p->tolerance_db, p->tolerance_ssim, p->worst_db};
@@ -118,7 +118,7 @@ static enum orl_result write_and_look(struct trim_search *s)
 static enum orl_result run(struct trim_search *s)
 {
     ORL_TRY(start(s));
-    if (s->params->tune)
+    if (!s->params->keep_options)
         ORL_TRY(tune(s));
     ORL_TRY(orl_trim_climb(s));
     ORL_TRY(orl_trim_make_faster(s));

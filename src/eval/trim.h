@@ -4,6 +4,7 @@
 #define ORL_EVAL_TRIM_H
 
 #include "eval/choice.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 
 // What a step makes smaller.
@@ -40,19 +41,25 @@ struct orl_trim_figures {
     double held_psnr_db, held_ssim; // held-out photographs; 0: there are none
 };
 
+#define ORL_TRIM_OPTIONS(ROW) \
+    ROW(out, "out", NEEDED("SCENE2"), "the folder to make") \
+    ROW(tolerance_db, "tolerance", NUMBER(0.1, 0, 100, "DB"), \
+        "training photographs may lose so much on average") \
+    ROW(tolerance_ssim, "tolerance-ssim", NUMBER(0.01, 0, 1, "SHARE"), \
+        "and so much of SSIM, which sees blur that PSNR does not") \
+    ROW(worst_db, "worst", NUMBER(0.5, 0, 100, "DB"), "and one of them so much") \
+    ROW(max_mib, "max-bytes", NUMBER(0, 0.001, 1 << 20, "MIB"), \
+        "instead: the best picture within so much device memory for points and photographs") \
+    ROW(max_frame_ms, "max-frame-ms", NUMBER(0, 0.001, 1e6, "MS"), \
+        "instead: the best picture within so long a frame; with --max-bytes, both") \
+    ROW(keep_options, "keep-options", FLAG, "do not tune the method's options first") \
+    ROW(views, "views", INT(6, 2, 64, "N"), "photographs that decide on each step") \
+    ROW(size_divide, "size-divide", INT(1, 1, 16, "N"), "compare at 1/N of their size") \
+    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
+        "try nothing new after so long, by the clock; default: no limit")
 struct orl_trim_params {
+    ORL_TRIM_OPTIONS(ORL_OPTION_MEMBER)
     const struct orl_choice *start; // the method and its options
-    const char *out;                // the folder to make
-    double tolerance_db;  // the most that the mean over training photographs may lose
-    double tolerance_ssim; // the most SSIM that the mean may lose
-    double worst_db;      // the most that one of them may lose
-    size_t max_bytes;     // instead of a tolerance: least loss within these bytes of the model on
-                          // the device; 0: none
-    double max_frame_ms;  // the same for the time of a frame; 0: none
-    size_t views;         // photographs that look at each step first, evenly chosen
-    int size_divide;      // pictures are compared at 1/n of the photographs' size
-    double budget_s;      // no new trial starts after this time; 0: no limit
-    bool tune;            // tunes the method's options first, which may make room for other steps
     void (*on_step)(void *priv, const struct orl_trim_step *step); // after each; may be NULL
     void *priv;
     const struct orl_progress *progress;

@@ -106,12 +106,12 @@ static bool set_level(const struct trim_search *s, size_t level, struct trim_sta
 
 bool orl_trim_has_budget(const struct trim_search *s)
 {
-    return s->params->max_bytes || s->params->max_frame_ms > 0;
+    return s->params->max_mib > 0 || s->params->max_frame_ms > 0;
 }
 
 static bool has_bytes(const struct trim_search *s)
 {
-    return !s->params->max_bytes || s->now->step.bytes <= (double)s->params->max_bytes;
+    return !(s->params->max_mib > 0) || s->now->step.bytes <= s->params->max_mib * (1 << 20);
 }
 
 static bool has_time(const struct trim_search *s)

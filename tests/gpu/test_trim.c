@@ -202,7 +202,8 @@ static void trim(const struct fixture *f, double tolerance_db, double tolerance_
                                      .params = orl_method_find(NULL, "oriel")->params};
     char *out = orl_path_join(NULL, f->dir, "../trimmed");
     const struct orl_trim_params params = {
-        .start = &start, .out = out, .tolerance_db = tolerance_db, .tolerance_ssim = tolerance_ssim,
+        .start = &start, .keep_options = true, .out = out, .tolerance_db = tolerance_db,
+        .tolerance_ssim = tolerance_ssim,
         .worst_db = 5 * tolerance_db, .views = 8, .size_divide = 1};
     save_scene(f);
     assert_int_equal(orl_trim_run(gpu, &f->scene, &params, result), ORL_OK);
@@ -219,8 +220,8 @@ static void a_budget_that_cannot_be_kept_is_refused(void **state)
                                      .params = orl_method_find(NULL, "points")->params};
     setup_same_places(&f);
     char *out = orl_path_join(NULL, f.dir, "../too-small");
-    const struct orl_trim_params params = {.start = &start, .out = out, .max_bytes = 1, .views = 2,
-                                           .size_divide = 1};
+    const struct orl_trim_params params = {.start = &start, .keep_options = true, .out = out,
+                                           .max_mib = 1e-6, .views = 2, .size_divide = 1};
     assert_int_equal(orl_trim_run(gpu, &f.scene, &params, &result), ORL_ERR_DATA);
     assert_null(result.steps);
     assert_false(orl_path_is_dir(out));
@@ -365,7 +366,7 @@ static void a_photograph_that_repeats_another_goes(void **state)
     assert_int_equal(orl_scene_open(NULL, f.dir, &whole), ORL_OK);
     const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
                                      .params = orl_method_find(NULL, "airieau")->params};
-    const struct orl_trim_params params = {.start = &start, .out = out, .tolerance_db = 0.1,
+    const struct orl_trim_params params = {.start = &start, .keep_options = true, .out = out, .tolerance_db = 0.1,
                                            .tolerance_ssim = 1, .worst_db = 0.5, .views = 8,
                                            .size_divide = 1};
     assert_int_equal(orl_trim_run(gpu, whole, &params, &result), ORL_OK);
@@ -406,7 +407,7 @@ static void photographs_that_stand_close_go(void **state)
     const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
                                      .params = orl_method_find(NULL, "airieau")->params};
     // All differ from the truth by 55 dB or more, which depends on how a device rounds.
-    const struct orl_trim_params params = {.start = &start, .out = out, .tolerance_db = 3,
+    const struct orl_trim_params params = {.start = &start, .keep_options = true, .out = out, .tolerance_db = 3,
                                            .tolerance_ssim = 0.01, .worst_db = 6, .views = 4,
                                            .size_divide = 1};
     assert_int_equal(orl_trim_run(gpu, whole, &params, &result), ORL_OK);
