@@ -57,19 +57,25 @@ static double get_positive(ExifData *data, ExifIfd ifd, ExifTag tag)
     return get_number(data, ifd, tag, &value) && value > 0 ? value : 0;
 }
 
+void orl_exif_text(const void *bytes, size_t count, char *text, size_t size)
+{
+    const uint8_t *from = bytes;
+    size_t length = 0;
+    while (length < count && length + 1 < size && from[length])
+        length++;
+    // Cameras pad texts with spaces, and control characters would break reports.
+    while (length && from[length - 1] == ' ')
+        length--;
+    for (size_t i = 0; i < length; i++)
+        text[i] = from[i] < 0x20 ? ' ' : (char)from[i];
+    text[length] = '\0';
+}
+
 static void get_text(ExifData *data, ExifIfd ifd, ExifTag tag, char *text, size_t size)
 {
     ExifEntry *entry = exif_content_get_entry(data->ifd[ifd], tag);
-    size_t length = 0;
-    if (entry && entry->data && entry->format == EXIF_FORMAT_ASCII)
-        while (length < entry->size && length + 1 < size && entry->data[length])
-            length++;
-    // Cameras pad texts with spaces, and control characters would break reports.
-    while (length && entry->data[length - 1] == ' ')
-        length--;
-    for (size_t i = 0; i < length; i++)
-        text[i] = entry->data[i] < 0x20 ? ' ' : (char)entry->data[i];
-    text[length] = '\0';
+    bool ascii = entry && entry->data && entry->format == EXIF_FORMAT_ASCII;
+    orl_exif_text(ascii ? entry->data : NULL, ascii ? entry->size : 0, text, size);
 }
 
 static double get_time(ExifData *data)

@@ -126,38 +126,23 @@ static exr_result_t read_chunk(struct exr_reader *reader, const exr_chunk_info_t
     return code == EXR_ERR_SUCCESS ? exr_decoding_run(reader->context, 0, pipe) : code;
 }
 
-static exr_result_t read_scanlines(struct exr_reader *reader)
+// Reads the tiles of the finest level, or chunks of scanlines, which are tiles as wide as the picture.
+static exr_result_t read_chunks(struct exr_reader *reader, bool tiled)
 {
-    int32_t lines = 0;
-    exr_result_t code = exr_get_scanlines_per_chunk(reader->context, 0, &lines);
-    if (code == EXR_ERR_SUCCESS && lines < 1)
-        code = EXR_ERR_BAD_CHUNK_LEADER;
-    for (int y = 0; y < reader->image->height && code == EXR_ERR_SUCCESS; y += lines) {
-        exr_chunk_info_t chunk;
-        code = exr_read_scanline_chunk_info(reader->context, 0, reader->window.min.y + y, &chunk);
-        if (code == EXR_ERR_SUCCESS)
-            code = read_chunk(reader, &chunk, 0, y);
-    }
-    return code;
-}
-
-// Reads the tiles of the finest level.
-static exr_result_t read_tiles(struct exr_reader *reader)
-{
-    int32_t width = 0, height = 0;
-    exr_result_t code = exr_get_tile_sizes(reader->context, 0, 0, 0, &width, &height);
+    const struct orl_image *image = reader->image;
+    int32_t width = image->width, height = 0;
+    exr_result_t code = tiled ? exr_get_tile_sizes(reader->context, 0, 0, 0, &width, &height)
+                              : exr_get_scanlines_per_chunk(reader->context, 0, &height);
     if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1))
         code = EXR_ERR_BAD_CHUNK_LEADER;
-    for (int y = 0, row = 0; y < reader->image->height && code == EXR_ERR_SUCCESS;
-         y += height, row++) {
-        for (int x = 0, column = 0; x < reader->image->width && code == EXR_ERR_SUCCESS;
-             x += width, column++) {
+    for (int y = 0, row = 0; y < image->height && code == EXR_ERR_SUCCESS; y += height, row++)
+        for (int x = 0, column = 0; x < image->width && code == EXR_ERR_SUCCESS; x += width, column++) {
             exr_chunk_info_t chunk;
-            code = exr_read_tile_chunk_info(reader->context, 0, column, row, 0, 0, &chunk);
+            code = tiled ? exr_read_tile_chunk_info(reader->context, 0, column, row, 0, 0, &chunk)
+                         : exr_read_scanline_chunk_info(reader->context, 0, reader->window.min.y + y, &chunk);
             if (code == EXR_ERR_SUCCESS)
                 code = read_chunk(reader, &chunk, x, y);
         }
-    }
     return code;
 }
 
@@ -174,8 +159,7 @@ static enum orl_result read_part(struct exr_reader *reader)
     ORL_TRY(orl_picture_check_memory(reader->log, reader->path, (uint64_t)width, (uint64_t)height,
                                      (uint64_t)reader->count * sizeof(float)));
     ORL_TRY(orl_image_init(reader->log, reader->image, width, height, reader->count, ORL_PIXEL_F32));
-    return check(reader, storage == EXR_STORAGE_SCANLINE ? read_scanlines(reader)
-                                                         : read_tiles(reader));
+    return check(reader, read_chunks(reader, storage == EXR_STORAGE_TILED));
 }
 
 static enum orl_result start(struct exr_reader *reader)

@@ -97,6 +97,8 @@ void orl_profile_destroy(struct orl_profile **profile);
 // are clipped to it.
 void orl_profile_apply(const struct orl_profile *profile, struct orl_image *image);
 
+// Copies a text of at most `count` bytes, which ends before a zero byte, into `size` bytes.
+void orl_exif_text(const void *bytes, size_t count, char *text, size_t size);
 // Decodes a block "Exif\0\0...". A damaged block gives zeroes and a warning.
 enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                 size_t size, struct orl_exif *exif);

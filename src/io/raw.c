@@ -53,14 +53,6 @@ static enum orl_result open_raw(const struct orl_log *log, const char *path, boo
     return check(log, path, libraw_open_file(raw, path));
 }
 
-static void copy_text(const char *from, char *to, size_t size)
-{
-    size_t length = 0;
-    for (; from[length] && length + 1 < size; length++)
-        to[length] = (unsigned char)from[length] < 32 ? ' ' : from[length];
-    to[length] = '\0';
-}
-
 static double positive(float value)
 {
     return isfinite(value) && value > 0 ? (double)value : 0;
@@ -80,8 +72,8 @@ enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
     if (result == ORL_OK) {
         *info = (struct orl_picture_info){.width = raw->sizes.iwidth,
                                           .height = raw->sizes.iheight, .bits = 16};
-        copy_text(raw->idata.make, exif->make, sizeof exif->make);
-        copy_text(raw->idata.model, exif->model, sizeof exif->model);
+        orl_exif_text(raw->idata.make, strlen(raw->idata.make), exif->make, sizeof exif->make);
+        orl_exif_text(raw->idata.model, strlen(raw->idata.model), exif->model, sizeof exif->model);
         exif->exposure_s = positive(raw->other.shutter);
         exif->aperture = positive(raw->other.aperture);
         exif->iso = positive(raw->other.iso_speed);

@@ -111,16 +111,8 @@ static enum orl_result read_header(struct tiff_job *job)
 static void copy_text(TIFF *tiff, uint32_t tag, char *text, size_t size)
 {
     const char *value = NULL;
-    if (!TIFFGetField(tiff, tag, &value) || !value)
-        return;
-    size_t length = 0;
-    while (value[length] && length + 1 < size) {
-        text[length] = (unsigned char)value[length] < 32 ? ' ' : value[length];
-        length++;
-    }
-    while (length && text[length - 1] == ' ')
-        length--;
-    text[length] = '\0';
+    if (TIFFGetField(tiff, tag, &value) && value)
+        orl_exif_text(value, strlen(value), text, size);
 }
 
 static double positive(TIFF *tiff, uint32_t tag)
@@ -209,49 +201,27 @@ static void take_pixels(const struct tiff_job *job, const uint8_t *from, size_t 
     }
 }
 
-static int plane_count(const struct tiff_job *job)
-{
-    return job->planar == PLANARCONFIG_SEPARATE ? job->samples : 1;
-}
-
-static enum orl_result read_rows(struct tiff_job *job, struct orl_image *image)
-{
-    bool separate = job->planar == PLANARCONFIG_SEPARATE;
-    tmsize_t size = TIFFScanlineSize(job->tiff);
-    size_t need = (size_t)job->width * (job->bits / 8) * (separate ? 1 : job->samples);
-    if (size < 0 || (size_t)size < need)
-        return fail(job);
-    uint8_t *row = orl_array(job->log, (size_t)size, 1);
-    ORL_TRY_MEMORY(row);
-    enum orl_result result = ORL_OK;
-    for (int plane = 0; plane < plane_count(job) && result == ORL_OK; plane++)
-        for (uint32_t y = 0; y < job->height && result == ORL_OK; y++) {
-            if (TIFFReadScanline(job->tiff, row, y, (uint16_t)plane) != 1)
-                result = fail(job);
-            take_pixels(job, row, job->width, separate ? plane : -1,
-                        image->f32 + (size_t)y * job->width * 3);
-        }
-    free(row);
-    return result;
-}
-
+// Reads the picture's tiles, or its rows, which are tiles as wide as it.
 static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
 {
-    uint32_t width = 0, height = 0;
-    bool separate = job->planar == PLANARCONFIG_SEPARATE;
-    TIFFGetField(job->tiff, TIFFTAG_TILEWIDTH, &width);
-    TIFFGetField(job->tiff, TIFFTAG_TILELENGTH, &height);
-    tmsize_t size = TIFFTileSize(job->tiff);
+    bool separate = job->planar == PLANARCONFIG_SEPARATE, tiled = TIFFIsTiled(job->tiff);
+    uint32_t width = tiled ? 0 : job->width, height = !tiled;
+    if (tiled) {
+        TIFFGetField(job->tiff, TIFFTAG_TILEWIDTH, &width);
+        TIFFGetField(job->tiff, TIFFTAG_TILELENGTH, &height);
+    }
+    tmsize_t size = tiled ? TIFFTileSize(job->tiff) : TIFFScanlineSize(job->tiff);
     uint64_t pitch = (uint64_t)width * (job->bits / 8) * (separate ? 1 : job->samples);
     if (!width || !height || size <= 0 || (uint64_t)size / height < pitch || size > 1 << 30)
         return fail(job);
     uint8_t *tile = orl_array(job->log, (size_t)size, 1);
     ORL_TRY_MEMORY(tile);
     enum orl_result result = ORL_OK;
-    for (int plane = 0; plane < plane_count(job); plane++)
+    for (uint16_t plane = 0; plane < (separate ? job->samples : 1); plane++)
         for (uint32_t y = 0; y < job->height && result == ORL_OK; y += height)
             for (uint32_t x = 0; x < job->width && result == ORL_OK; x += width) {
-                if (TIFFReadTile(job->tiff, tile, x, y, 0, (uint16_t)plane) < 0)
+                if (tiled ? TIFFReadTile(job->tiff, tile, x, y, 0, plane) < 0
+                          : TIFFReadScanline(job->tiff, tile, y, plane) != 1)
                     result = fail(job);
                 uint32_t columns = job->width - x < width ? job->width - x : width;
                 uint32_t rows = job->height - y < height ? job->height - y : height;
@@ -287,7 +257,7 @@ enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *pa
     job.encoded = profile != NULL;
     ORL_THEN(result, orl_picture_check_memory(log, path, job.width, job.height, 3 * sizeof(float)));
     ORL_THEN(result, orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32));
-    ORL_THEN(result, TIFFIsTiled(job.tiff) ? read_tiles(&job, image) : read_rows(&job, image));
+    ORL_THEN(result, read_tiles(&job, image));
     if (result == ORL_OK && profile)
         orl_profile_apply(profile, image);
     orl_profile_destroy(&profile);
