@@ -6,15 +6,16 @@
 #include <xxhash.h>
 
 #include "core/color.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/process.h"
-#include "eval/refine_state.h"
-#include "eval/score.h"
+#include "eval/validation.h"
 #include "io/picture.h"
 #include "scene/depth_buffer.h"
 #include "scene/manifest.h"
 #include "scene/meter.h"
 #include "scene/tuned_settings.h"
+#include "soft/descent.h"
 #include "soft/soft_ply.h"
 
 // Far splats: one of GRID x GRID pixels, as many in all views together as FAR_VIEWS views have open pixels. A
@@ -41,6 +42,18 @@ static const float FAR_OPACITY = 0.27f, FADED = 0.02f;
 enum { SPLAT_ENTRIES = 5, PIXEL_ENTRIES = 12, SPLATS_MIN = 1000 };
 static const double KEEP_EVERY = 20; // the state is kept so many times as long apart as keeping it takes
 
+static const size_t STATE_MAX = (size_t)1 << 36, ROW = ORL_SOFT_VALUES * sizeof(float); // bytes; of a splat
+
+// Where a run goes on after it was cut off, in a file for the same machine. Zero-initialised, it is the beginning.
+// The file holds it as it is, then the model's splats and, once a step of this part has been made, its moments.
+struct state {
+    uint64_t key;    // hash of all that the splats depend on: photographs, settings, the splats to begin with
+    uint64_t splats; // of the model
+    int32_t part;    // of the descent: 0; 1: the shares have been found
+    struct orl_soft_descent_report at; // in this part
+    struct orl_refine_report report;
+};
+
 struct refine {
     const struct orl_log *log;
     const struct orl_scene *scene;
@@ -49,7 +62,7 @@ struct refine {
     size_t count, checks;
     double steps;                  // for each photograph
     struct orl_soft_model model;   // owned
-    struct orl_refine_state state;
+    struct state state;
     const char *state_path;
     double keep_s;                 // how long it took to keep the state
 };
@@ -236,6 +249,63 @@ static enum orl_result keep_shares(const struct refine *r, struct orl_refine_rep
                                              r->params->size_divide, true));
 }
 
+// --- the state ---
+
+static enum orl_result keep_state(struct refine *r)
+{
+    const double start_s = orl_time_s();
+    struct orl_atomic_file file;
+    r->state.splats = r->model.count;
+    ORL_TRY(orl_atomic_open(r->log, r->state_path, &file));
+    fwrite(&r->state, sizeof r->state, 1, file.stream);
+    fwrite(r->model.splats, ROW, r->model.count, file.stream);
+    if (r->state.at.steps)
+        fwrite(r->model.moments, ROW, 2 * r->model.count, file.stream);
+    ORL_TRY(orl_atomic_commit(r->log, &file));
+    r->keep_s = orl_time_s() - start_s;
+    return ORL_OK;
+}
+
+static enum orl_result take_state(struct refine *r, const struct state *state, const uint8_t *rows)
+{
+    const size_t count = state->splats;
+    struct orl_soft_model read = {.splats = orl_array(r->log, count, ROW), .count = count, .capacity = count};
+    if (state->at.steps)
+        read.moments = orl_array(r->log, 2 * count, ROW);
+    orl_soft_finish(&r->model);
+    r->model = read;
+    if (!read.splats || (state->at.steps && !read.moments))
+        return ORL_ERR_MEMORY;
+    memcpy(read.splats, rows, count * ROW);
+    if (read.moments)
+        memcpy(read.moments, rows + count * ROW, 2 * count * ROW);
+    r->state = *state;
+    return ORL_OK;
+}
+
+// Takes state and model of the file, if there is one with the key of this run. Another one is logged.
+static enum orl_result read_state(struct refine *r)
+{
+    struct state head = {0};
+    uint8_t *data = NULL;
+    size_t size = 0;
+    if (!orl_path_is_file(r->state_path))
+        return ORL_OK;
+    enum orl_result result = orl_file_read(r->log, r->state_path, STATE_MAX, &data, &size);
+    if (result == ORL_OK && size >= sizeof head)
+        memcpy(&head, data, sizeof head);
+    const size_t rows = head.at.steps ? 3 : 1;
+    bool fits = head.key == r->state.key && head.splats > 0 && head.splats < STATE_MAX / ROW &&
+                size == sizeof head + rows * head.splats * ROW;
+    if (result == ORL_OK && !fits)
+        orl_logf(r->log, ORL_LOG_WARNING, "%s: of another scene or other settings, or damaged; refine begins anew",
+                 r->state_path);
+    else if (result == ORL_OK)
+        result = take_state(r, &head, data + sizeof head);
+    free(data);
+    return result;
+}
+
 // --- the whole ---
 
 // Device memory for so many splats of points and the far ones that there may be, in a view of this size.
@@ -322,7 +392,7 @@ static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
     add_key(r, r->model.splats, r->model.count * sizeof *r->model.splats);
     const double settings[] = {r->steps, p->budget_s, p->seed, (double)p->max_vram_bytes};
     add_key(r, settings, sizeof settings);
-    ORL_TRY(orl_refine_state_read(r->log, r->state_path, &r->state, &r->model));
+    ORL_TRY(read_state(r));
     if (r->state.splats > 0) {
         orl_logf(r->log, ORL_LOG_INFO, "refine: goes on after %d steps", report->steps + r->state.at.steps);
         return ORL_OK;
@@ -330,14 +400,6 @@ static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
     ORL_TRY(add_all_far(r, gpu));
     report->far = r->model.count - report->points;
     return ORL_OK;
-}
-
-static enum orl_result keep_state(struct refine *r)
-{
-    const double start_s = orl_time_s();
-    enum orl_result result = orl_refine_state_write(r->log, r->state_path, &r->state, &r->model);
-    r->keep_s = orl_time_s() - start_s;
-    return result;
 }
 
 // A part of the descent, on the first `photographs` of them, and its splats as SCENE/soft.ply.

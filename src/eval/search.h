@@ -7,7 +7,7 @@
 #include <jansson.h>
 
 #include "eval/choice.h"
-#include "eval/score.h"
+#include "eval/validation.h"
 #include "oriel/progress.h"
 
 enum { ORL_SEARCH_DIVIDE_MAX = 16 };

@@ -1,5 +1,5 @@
 // When oriel tune takes a value for better.
-#include "eval/score.h"
+#include "eval/validation.h"
 #include "test.h"
 
 // Scores of four photographs, each by its PSNR; SSIM is the same for all.
