@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/memory.h"
 #include "hdr/internal.h"
 
@@ -80,6 +81,58 @@ static enum orl_result draw(struct orl_hdr *hdr, const struct orl_view *view, co
     return orl_series_draw(orl_gpu_log(hdr->gpu), &hdr->series, &hdr->params, view, skip, frame);
 }
 
+// --- supersampled frames ---
+
+// Takes the median, since a mean of two depths at an edge would lie on neither surface.
+static void reduce_depth(const struct orl_image *fine, int factor, struct orl_image *out)
+{
+    float found[16];
+    for (int y = 0; y < out->height; y++)
+        for (int x = 0; x < out->width; x++) {
+            int count = 0;
+            for (int k = 0; k < factor * factor; k++) {
+                float z = fine->f32[(size_t)(y * factor + k / factor) * (size_t)fine->width +
+                                    (size_t)(x * factor + k % factor)];
+                int at = count;
+                if (!(z > 0))
+                    continue;
+                for (; at > 0 && found[at - 1] > z; at--)
+                    found[at] = found[at - 1];
+                found[at] = z;
+                count++;
+            }
+            out->f32[(size_t)y * (size_t)out->width + (size_t)x] =
+                count ? found[(count - 1) / 2] : 0;
+        }
+}
+
+static void normalize(struct orl_image *normals)
+{
+    size_t count = (size_t)normals->width * (size_t)normals->height;
+    for (size_t i = 0; i < count; i++) {
+        float *n = normals->f32 + 3 * i;
+        float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int c = 0; c < 3 && length > 0; c++)
+            n[c] /= length;
+    }
+}
+
+// Averages factor x factor pixels; the images of `fine` are that many times as large. Depth is the
+// median of the pixels that have one. Normals keep their length.
+static enum orl_result reduce(const struct orl_log *log, const struct orl_frame *fine, int factor,
+                              struct orl_frame *frame)
+{
+    const int width = fine->color.width / factor, height = fine->color.height / factor;
+    ORL_TRY(orl_bridge_resize(log, &fine->color, width, height, &frame->color));
+    ORL_TRY(orl_bridge_resize(log, &fine->normal, width, height, &frame->normal));
+    ORL_TRY(orl_bridge_resize(log, &fine->coverage, width, height, &frame->coverage));
+    ORL_TRY(orl_bridge_resize(log, &fine->confidence, width, height, &frame->confidence));
+    ORL_TRY(orl_image_init(log, &frame->depth, width, height, 1, ORL_PIXEL_F32));
+    reduce_depth(&fine->depth, factor, &frame->depth);
+    normalize(&frame->normal);
+    return ORL_OK;
+}
+
 enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, const bool *skip,
                              struct orl_frame *frame)
 {
@@ -92,7 +145,9 @@ enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, c
                                       samples * view->camera.height);
     memset(frame, 0, sizeof *frame);
     enum orl_result result = draw(hdr, &large, skip, &fine);
-    ORL_THEN(result, orl_frame_reduce(orl_gpu_log(hdr->gpu), &fine, samples, frame));
+    ORL_THEN(result, reduce(orl_gpu_log(hdr->gpu), &fine, samples, frame));
     orl_frame_finish(&fine);
+    if (result != ORL_OK)
+        orl_frame_finish(frame);
     return result;
 }

@@ -40,12 +40,6 @@ struct orl_hdr {
     struct series_set series;
 };
 
-// --- images (reduce.c) ---
-
-// Averages factor x factor pixels; the images of `fine` are that many times as large. Depth is the
-// median of the pixels that have one. Normals keep their length.
-enum orl_result orl_frame_reduce(const struct orl_log *log, const struct orl_frame *fine,
-                                 int factor, struct orl_frame *frame);
 // Fills the colour of unknown pixels (known <= 0) from the pixels around them. The left and right
 // borders are adjacent (around.c).
 enum orl_result orl_fill_around(const struct orl_log *log, struct orl_image *color,
