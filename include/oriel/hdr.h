@@ -41,11 +41,12 @@ enum orl_result orl_hdr_draw(struct orl_hdr *hdr, const struct orl_view *view, c
 struct orl_panorama {
     double position[3];    // world
     double forward[3];     // world: viewing direction of its centre, before it is made level
-    double up[3];          // world, not zero; see orl_scene_up
+    double up[3];          // world, not zero
     int width, height;     // [8, 32768] each; equirectangular
 };
 // Sets position and forward to those of the photograph `at`; NULL: forward to the photographs' mean,
-// position is left alone. And `up` as orl_scene_up. ORL_ERR_NOT_FOUND: there is none of this name.
+// position is left alone. And `up` to their mean upward direction, since
+// people hold cameras level. ORL_ERR_NOT_FOUND: there is none of this name.
 enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_scene *scene,
                                    const char *at, struct orl_panorama *panorama) ORL_CHECK_RESULT;
 // All directions from a point: longitude +pi to -pi from left to right, 0 (forward) in the
@@ -58,7 +59,5 @@ enum orl_result orl_hdr_draw_panorama(struct orl_hdr *hdr, const struct orl_pano
 // The panorama's position and orientation as a view of its centre, with a placeholder camera of its
 // size. False if `up` has zero length.
 bool orl_panorama_view(const struct orl_panorama *panorama, struct orl_view *view);
-// The mean upward direction of the photographs, unit length, since people hold cameras level.
-void orl_scene_up(const struct orl_scene *scene, double up[3]);
 
 #endif

@@ -12,9 +12,9 @@
 #include "core/vec3.h"
 #include "exchange/gaussians.h"
 #include "exchange/kinds.h"
-#include "oriel/hdr.h"
 #include "scene/info.h"
 #include "scene/ply.h"
+#include "scene/upright.h"
 
 enum { GL_UNSIGNED_SHORT_ = 5123, GL_FLOAT_ = 5126, GL_ARRAY_BUFFER_ = 34962, POINTS_ = 0 };
 
@@ -78,7 +78,7 @@ static void add_bounds(json_t *root, const struct orl_points *points)
 static json_t *upright(const struct orl_scene *scene)
 {
     double up[3], axis[3], half;
-    orl_scene_up(scene, up);
+    orl_scene_mean_up(scene, up);
     orl_cross3(up, (double[3]){0, 1, 0}, axis);
     half = 1 + up[1];
     if (half < 1e-9) // upside down: half a turn about x

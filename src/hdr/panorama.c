@@ -65,15 +65,10 @@ static bool panorama_axes(const struct orl_panorama *p, double axes[3][3])
     return false;
 }
 
-void orl_scene_up(const struct orl_scene *scene, double up[3])
-{
-    orl_scene_mean_up(scene, up);
-}
-
 enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_scene *scene,
                                    const char *at, struct orl_panorama *p)
 {
-    orl_scene_up(scene, p->up);
+    orl_scene_mean_up(scene, p->up);
     memset(p->forward, 0, sizeof p->forward);
     for (size_t k = 0; !at && k < scene->photo_count; k++)
         for (int i = 0; i < 3; i++)

@@ -8,6 +8,7 @@
 #include "oriel/hdr.h"
 #include "io/exr.h"
 #include "io/picture.h"
+#include "scene/upright.h"
 #include "shared/render_blocks.h"
 
 static struct orl_gpu *gpu;
@@ -688,7 +689,7 @@ static void panoramas_show_what_is_there(void **state)
     struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
     struct orl_panorama p = {.position = {0.5, 0.2, -0.3}, .forward = {1, 0.3, 0},
                              .width = W, .height = H};
-    orl_scene_up(&f.scene, p.up);
+    orl_scene_mean_up(&f.scene, p.up);
     assert_true(p.up[1] < -0.9);
     p.up[0] = p.up[2] = 0;
     assert_int_equal(orl_hdr_create(gpu, &f.scene, &params, &hdr), ORL_OK);
