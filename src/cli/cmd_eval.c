@@ -149,22 +149,17 @@ static enum orl_result evaluate(struct job *job, size_t index)
     struct call *call = job->call;
     const struct orl_choice *choice = &job->choices.items[index];
     const struct eval_options *o = job->options;
-    struct orl_eval_params params = {.method = choice->method->name, .setting = choice->setting,
-                                     .render = &choice->params, .image_dir = o->images,
-                                     .pictures = o->pictures, .views = o->views,
-                                     .divide = o->divide, .progress = call->progress,
-                                     .sequence = o->time_step < 0 && call->scene->frame_count
-                                                     ? call->scene : NULL,
+    struct orl_eval_params params = {.choice = choice, .image_dir = o->images, .pictures = o->pictures,
+                                     .views = o->views, .divide = o->divide, .progress = call->progress,
+                                     .sequence = o->time_step < 0 && call->scene->frame_count ? call->scene : NULL,
                                      .truth = o->truth ? &job->truth : NULL};
     struct orl_eval eval = {0};
     enum orl_result result = ORL_OK;
-    if (o->pictures) {
-        params.method = "pictures";
-    } else if (o->merge >= 0) {
+    if (o->merge >= 0) {
         result = start_hdr(job, &choice->params);
         params.draw_radiance = draw_radiance;
         params.draw_priv = job->hdr;
-    } else {
+    } else if (!o->pictures) {
         result = start_renderer(job);
     }
     ORL_THEN(result, orl_eval_run(call->gpu, call->renderer, call->scene, &params, &eval));

@@ -71,7 +71,7 @@ static void add_pass_times(struct orl_eval *eval, const struct orl_timing *timin
 static enum orl_result draw_and_time(struct job *job, const struct orl_view *view,
                                      struct orl_frame *frame, struct orl_eval_view *measured)
 {
-    struct view_frames frames = {job, view, *job->params->render};
+    struct view_frames frames = {job, view, job->params->choice->params};
     frames.render.leave_out |= ORL_LAYER_NORMAL;
     const struct orl_timing_params params = {
         .draw = draw_again, .priv = &frames, .views = 1, .seconds = seconds,
@@ -104,7 +104,7 @@ static enum orl_result render(struct job *job, const struct orl_heldout *heldout
                               struct orl_image *coverage)
 {
     const struct orl_render_params *render =
-        job->params->draw_radiance ? NULL : job->params->render;
+        job->params->draw_radiance ? NULL : &job->params->choice->params;
     struct orl_frame frame = {0};
     enum orl_result result = draw_and_time(job, &heldout->view, &frame, view);
     if (result == ORL_OK && job->params->truth)
@@ -145,7 +145,7 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
     if (result == ORL_OK && job->eval->has_vehicle)
         result = compare_vehicle(job, view, &rendered, &heldout.picture, &coverage);
     if (result == ORL_OK && params->image_dir)
-        result = orl_eval_write_images(job->log, job->scene, params, view->photo, &rendered,
+        result = orl_eval_write_images(job->log, job->eval, params->image_dir, view->photo, &rendered,
                                        &heldout.picture);
     orl_image_finish(&coverage);
     orl_image_finish(&rendered);
@@ -191,8 +191,7 @@ static enum orl_result measure_all(struct job *job)
         result = orl_dir_make(job->log, job->params->image_dir);
     for (size_t i = 0; i < eval->view_count && result == ORL_OK; i++) {
         const char *name = job->scene->photos[eval->views[i].photo].name;
-        orl_progress_report(progress, job->params->method, (double)i, (double)eval->view_count,
-                            name);
+        orl_progress_report(progress, eval->method, (double)i, (double)eval->view_count, name);
         if (orl_progress_cancelled(progress))
             return ORL_ERR_CANCELLED;
         result = measure(job, &eval->views[i]);
@@ -200,8 +199,7 @@ static enum orl_result measure_all(struct job *job)
             orl_logf(job->log, ORL_LOG_ERROR, "%s: could not be measured", name);
     }
     if (result == ORL_OK)
-        orl_progress_report(progress, job->params->method, (double)eval->view_count,
-                            (double)eval->view_count, NULL);
+        orl_progress_report(progress, eval->method, (double)eval->view_count, (double)eval->view_count, NULL);
     return result;
 }
 
@@ -211,9 +209,10 @@ enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
 {
     struct job job = {.log = orl_gpu_log(gpu), .gpu = gpu, .renderer = renderer, .scene = scene,
                       .params = params, .eval = eval};
-    *eval = (struct orl_eval){.scene = scene, .method = params->method, .has_truth = params->truth,
-                              .has_vehicle = params->truth && params->truth->vehicle};
-    snprintf(eval->setting, sizeof eval->setting, "%s", params->setting ? params->setting : "");
+    *eval = (struct orl_eval){.scene = scene,
+                              .method = params->pictures ? "pictures" : params->choice->method->name,
+                              .has_truth = params->truth, .has_vehicle = params->truth && params->truth->vehicle};
+    snprintf(eval->setting, sizeof eval->setting, "%s", params->choice->setting);
     snprintf(eval->device, sizeof eval->device, "%s", orl_gpu_caps(gpu)->renderer);
     enum orl_result result = orl_eval_check(job.log, scene);
     ORL_THEN(result, list_views(&job, eval));

@@ -3,9 +3,8 @@
 #ifndef ORL_EVAL_EVAL_H
 #define ORL_EVAL_EVAL_H
 
-#include <jansson.h>
-
 #include "oriel/progress.h"
+#include "eval/choice.h"
 #include "eval/metrics.h"
 #include "eval/radiance_metrics.h"
 #include "eval/timing.h"
@@ -24,8 +23,8 @@ struct orl_eval_view {
 
 struct orl_eval {
     const struct orl_scene *scene; // not owned
-    const char *method;            // not owned
-    char setting[64];              // KEY=VALUE in which evaluations differ; empty: none
+    const char *method;            // not owned; of pictures "pictures"
+    char setting[64];              // as in struct orl_choice
     char device[128];
     struct orl_eval_view *views; // owned
     size_t view_count;
@@ -37,9 +36,7 @@ struct orl_eval {
 };
 
 struct orl_eval_params {
-    const char *method; // for reports
-    const char *setting; // as in struct orl_eval; NULL: none
-    const struct orl_render_params *render;
+    const struct orl_choice *choice;
     // Folder for NAME.photo.png, NAME.<method>.png and NAME.<method>.diff.png, made if needed. The
     // last shows the photograph, the rendering and four times their difference side by side. NULL:
     // none.

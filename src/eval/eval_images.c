@@ -47,19 +47,18 @@ static enum orl_result beside(const struct orl_log *log, const struct orl_image 
     return ORL_OK;
 }
 
-enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,
-                                      const struct orl_eval_params *params, size_t photo,
+enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_eval *eval,
+                                      const char *dir, size_t photo,
                                       const struct orl_image *rendered,
                                       const struct orl_image *photograph)
 {
-    const char *dir = params->image_dir, *method = params->method;
     struct orl_image panels = {0};
     char stem[ORL_PATH_SIZE];
-    print_stem(scene, photo, stem);
+    print_stem(eval->scene, photo, stem);
     enum orl_result result = beside(log, rendered, photograph, &panels);
     ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.photo.png", stem), photograph));
-    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.png", stem, method), rendered));
-    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.diff.png", stem, method), &panels));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.png", stem, eval->method), rendered));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.diff.png", stem, eval->method), &panels));
     orl_image_finish(&panels);
     return result;
 }

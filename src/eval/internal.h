@@ -5,9 +5,9 @@
 #include "eval/eval.h"
 #include "eval/heldout.h"
 
-// Writes one view's pictures into the existing folder params->image_dir.
-enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_scene *scene,
-                                      const struct orl_eval_params *params, size_t photo,
+// Writes one view's pictures into the existing folder `dir`.
+enum orl_result orl_eval_write_images(const struct orl_log *log, const struct orl_eval *eval,
+                                      const char *dir, size_t photo,
                                       const struct orl_image *rendered,
                                       const struct orl_image *photograph) ORL_CHECK_RESULT;
 // Reads another program's picture of the view, from `dir`, at the photograph's size. All of it counts

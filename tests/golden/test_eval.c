@@ -35,8 +35,8 @@ static struct orl_eval evaluate(const struct orl_scene *scene, const char *metho
     const struct orl_method *row = orl_method_find(NULL, method);
     assert_non_null(row);
     assert_int_equal(orl_renderer_create(gpu, scene, NULL, &renderer), ORL_OK);
-    const struct orl_eval_params params = {.method = row->name, .render = &row->params,
-                                           .image_dir = image_dir};
+    const struct orl_choice choice = {.method = row, .params = row->params};
+    const struct orl_eval_params params = {.choice = &choice, .image_dir = image_dir};
     assert_int_equal(orl_eval_run(gpu, renderer, scene, &params, &eval), ORL_OK);
     orl_renderer_destroy(&renderer);
     return eval;
@@ -144,7 +144,7 @@ static void tune_measures_what_eval_reports(void **state)
         struct orl_choice choice = {.method = orl_method_find(NULL, "oriel")};
         choice.params = choice.method->params;
         choice.params.alignment = uses[k];
-        const struct orl_eval_params eval_params = {.method = "oriel", .render = &choice.params};
+        const struct orl_eval_params eval_params = {.choice = &choice};
         const struct orl_search_params params = {.size_divide = 1, .views = 1, .budget_s = 1e-6};
         struct orl_renderer *renderer;
         struct orl_eval eval;
