@@ -40,7 +40,6 @@ COMMAND_OPTIONS(eval_options, EVAL_OPTIONS)
 struct job {
     struct call *call;           // its renderer: of the current method; NULL with --merge
     const struct eval_options *options;
-    struct orl_hdr *hdr;         // of the current method, with --merge
     struct orl_truth truth;
     struct orl_choices choices;
     json_t *reports;             // one per choice
@@ -120,19 +119,13 @@ static void print_walk_row(const struct orl_stability *s, bool first)
 
 // --- the job ---
 
-static enum orl_result draw_radiance(void *priv, const struct orl_view *view,
-                                     struct orl_frame *frame)
-{
-    return orl_hdr_draw(priv, view, NULL, frame);
-}
-
-static enum orl_result start_hdr(struct job *job, const struct orl_render_params *render)
+static enum orl_result start_hdr(struct job *job, const struct orl_render_params *render, struct orl_hdr **hdr)
 {
     struct orl_hdr_params params = {ORL_HDR_DEFAULTS};
     params.render = *render;
     params.max_vram_bytes = job->options->max_vram_bytes;
     params.merge = (enum orl_hdr_merge)job->options->merge;
-    return orl_hdr_create(job->call->gpu, job->call->scene, &params, &job->hdr);
+    return orl_hdr_create(job->call->gpu, job->call->scene, &params, hdr);
 }
 
 static enum orl_result start_renderer(struct job *job)
@@ -155,15 +148,12 @@ static enum orl_result evaluate(struct job *job, size_t index)
                                      .truth = o->truth ? &job->truth : NULL};
     struct orl_eval eval = {0};
     enum orl_result result = ORL_OK;
-    if (o->merge >= 0) {
-        result = start_hdr(job, &choice->params);
-        params.draw_radiance = draw_radiance;
-        params.draw_priv = job->hdr;
-    } else if (!o->pictures) {
+    if (o->merge >= 0)
+        result = start_hdr(job, &choice->params, &params.hdr);
+    else if (!o->pictures)
         result = start_renderer(job);
-    }
     ORL_THEN(result, orl_eval_run(call->gpu, call->renderer, call->scene, &params, &eval));
-    orl_hdr_destroy(&job->hdr);
+    orl_hdr_destroy(&params.hdr);
     orl_renderer_destroy(&call->renderer);
     ORL_TRY(result);
     if (!report_on_stdout(o->json))

@@ -36,16 +36,15 @@ struct view_frames {
 static enum orl_result draw(const struct view_frames *f, struct orl_frame *frame)
 {
     const struct orl_eval_params *params = f->job->params;
-    return params->draw_radiance
-               ? params->draw_radiance(params->draw_priv, f->view, frame)
-               : orl_renderer_draw(f->job->renderer, f->view, &f->render, NULL, frame);
+    return params->hdr ? orl_hdr_draw(params->hdr, f->view, NULL, frame)
+                       : orl_renderer_draw(f->job->renderer, f->view, &f->render, NULL, frame);
 }
 
 static enum orl_result draw_again(void *priv, size_t number)
 {
     const struct view_frames *f = priv;
     struct orl_scene *sequence = f->job->params->sequence;
-    if (!f->job->params->draw_radiance) {
+    if (!f->job->params->hdr) {
         if (sequence)
             ORL_TRY(orl_timing_show_time_step(f->job->gpu, sequence, f->job->renderer, number));
         return draw(f, NULL);
@@ -103,8 +102,7 @@ static enum orl_result render(struct job *job, const struct orl_heldout *heldout
                               struct orl_eval_view *view, struct orl_image *rendered,
                               struct orl_image *coverage)
 {
-    const struct orl_render_params *render =
-        job->params->draw_radiance ? NULL : &job->params->choice->params;
+    const struct orl_render_params *render = job->params->hdr ? NULL : &job->params->choice->params;
     struct orl_frame frame = {0};
     enum orl_result result = draw_and_time(job, &heldout->view, &frame, view);
     if (result == ORL_OK && job->params->truth)

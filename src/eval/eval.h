@@ -9,6 +9,7 @@
 #include "eval/radiance_metrics.h"
 #include "eval/timing.h"
 #include "eval/truth.h"
+#include "oriel/hdr.h"
 #include "oriel/render.h"
 
 struct orl_eval_view {
@@ -43,9 +44,7 @@ struct orl_eval_params {
     const char *image_dir;
     // Draws radiance instead of the renderer; NULL: the renderer draws. Radiance is brought to each
     // photograph's exposure, vignetting and response before the comparison.
-    enum orl_result (*draw_radiance)(void *priv, const struct orl_view *view,
-                                     struct orl_frame *frame);
-    void *draw_priv;
+    struct orl_hdr *hdr;
     // Another program's pictures of the views, PHOTO.png or .jpg, measured in place of renderings.
     const char *pictures;
     int views;  // held-out photographs at most, evenly chosen; 0: all
@@ -60,7 +59,7 @@ struct orl_eval_params {
 enum orl_result orl_eval_check(const struct orl_log *log,
                                const struct orl_scene *scene) ORL_CHECK_RESULT;
 // Renders the view of every held-out photograph at the photograph's size and compares. A
-// renderer with default orl_renderer_params uses no held-out photograph; with draw_radiance or
+// renderer with default orl_renderer_params uses no held-out photograph; with hdr or
 // pictures it may be NULL. Fails as orl_eval_check does.
 enum orl_result orl_eval_run(struct orl_gpu *gpu, struct orl_renderer *renderer,
                              const struct orl_scene *scene, const struct orl_eval_params *params,
