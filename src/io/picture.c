@@ -261,21 +261,6 @@ static struct orl_profile *find_profile(const struct orl_log *log, const char *p
     return profile;
 }
 
-// as_stored: samples are only scaled to [0, 1].
-static enum orl_result decode_eight(const struct orl_log *log, const struct orl_image *from,
-                                    bool as_stored, struct orl_image *image)
-{
-    enum orl_result result = orl_image_init(log, image, from->width, from->height, 3,
-                                            ORL_PIXEL_F32);
-    float table[256];
-    for (int v = 0; v < 256; v++)
-        table[v] = as_stored ? (float)v / 255 : orl_srgb_decode((float)v / 255);
-    size_t count = orl_image_bytes(from);
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        image->f32[i] = table[from->u8[i]];
-    return result;
-}
-
 // Decodes the samples of a JPEG, PNG or PNM file as stored. channels: of JPEG; kind: of PNG
 static enum orl_result decode_file(const struct orl_log *log, const char *path, enum format format, int channels,
                                    enum orl_png_kind kind, struct orl_image *image)
@@ -296,16 +281,21 @@ static enum orl_result decode_linear(const struct orl_log *log, const char *path
 {
     if (by_path[format].decode_linear)
         return by_path[format].decode_linear(log, path, image);
+    const bool deep = format == FORMAT_PNG; // decoded to floats at once
     struct orl_image eight = {0};
-    enum orl_result result = decode_file(log, path, format, 3, ORL_PNG_RGB_DEEP, format == FORMAT_PNG ? image : &eight);
-    size_t count = result == ORL_OK && image->data && !profile ? orl_image_bytes(image) / sizeof(float) : 0;
-    for (size_t i = 0; i < count; i++)
+    float light[256]; // of an 8-bit sample, or with a profile the sample as stored
+    for (int v = 0; v < 256; v++)
+        light[v] = profile ? (float)v / 255 : orl_srgb_decode((float)v / 255);
+    enum orl_result result = decode_file(log, path, format, 3, ORL_PNG_RGB_DEEP, deep ? image : &eight);
+    if (result == ORL_OK && !deep)
+        result = orl_picture_check_memory(log, path, (uint64_t)eight.width, (uint64_t)eight.height, 3 * sizeof(float));
+    if (result == ORL_OK && !deep)
+        result = orl_image_init(log, image, eight.width, eight.height, 3, ORL_PIXEL_F32);
+    const size_t count = result == ORL_OK ? orl_image_bytes(image) / sizeof(float) : 0;
+    for (size_t i = 0; !deep && i < count; i++)
+        image->f32[i] = light[eight.u8[i]];
+    for (size_t i = 0; deep && !profile && i < count; i++)
         image->f32[i] = orl_srgb_decode(image->f32[i]);
-    if (result == ORL_OK && eight.data)
-        result = orl_picture_check_memory(log, path, (uint64_t)eight.width,
-                                          (uint64_t)eight.height, 3 * sizeof(float));
-    if (result == ORL_OK && eight.data)
-        result = decode_eight(log, &eight, profile != NULL, image);
     if (result == ORL_OK && profile)
         orl_profile_apply(profile, image);
     orl_image_finish(&eight);
