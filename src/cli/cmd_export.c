@@ -12,13 +12,7 @@ static const char *kind_name(size_t index)
 
 #define EXPORT_OPTIONS(ROW) \
     ROW(kind, "as", NAMED(kind_name, -1, "KIND"), "what to write") \
-    ROW(out, "out", TEXT("FILE|DIR"), "where; nerfstudio and blender make a folder") \
-    ROW(degree, "sh", INT(-1, 0, 2, "N"), \
-        "of splats and glb: degree of spherical harmonics; default 1") \
-    ROW(thin, "thin", FLAG, "of splats: a third scale, for programs that know no discs") \
-    ROW(at, "at", TEXT("PHOTO"), \
-        "of hdri: the photograph whose place it is; default: the middlemost") \
-    ROW(width, "width", INT(0, 16, 32768, "PX"), "of hdri; default 2048")
+    ORL_EXPORT_OPTIONS(ROW)
 COMMAND_OPTIONS(export_options, EXPORT_OPTIONS)
 
 static void say_origin(const struct orl_log *log, const struct orl_scene *scene)
@@ -67,8 +61,7 @@ static enum orl_result run_export(struct call *call)
 {
     const struct export_options *o = call->options;
     const struct orl_log *log = call->log;
-    const struct orl_export_params params = {.out = o->out, .degree = o->degree, .thin = o->thin,
-                                             .at = o->at, .width = o->width,
+    const struct orl_export_params params = {ORL_EXPORT_OPTIONS(ORL_OPTION_COPY)
                                              .shader_dir = call->common->shader_dir};
     if (o->kind < 0)
         return orl_fail(log, ORL_ERR_ARGUMENT, "export: --as KIND is needed");

@@ -11,11 +11,7 @@
     ROW(keys, "only", LIST("KEY,KEY,.."), "tune these options; default: all that can be") \
     ROW(apply, "apply", FLAG, "keep the result in scene.json: render, eval and others use it") \
     ROW(fresh, "fresh", FLAG, "start from the method's values, not the scene's") \
-    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
-        "start no trial after so long; default: none") \
-    ROW(views, "views", INT(16, 1, 100000, "N"), "photographs to compare with, at most") \
-    ROW(size_divide, "size-divide", INT(1, 1, ORL_SEARCH_DIVIDE_MAX, "N"), "compare at 1/N of their size") \
-    ROW(gain_db, "gain", NUMBER(0.01, 0, 10, "DB"), "a change must bring so much") \
+    ORL_SEARCH_OPTIONS(ROW) \
     ROW(json, "json", TEXT("FILE"), "write result and trials as JSON") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(tune_options, TUNE_OPTIONS)
@@ -68,10 +64,9 @@ static enum orl_result run_tune(struct call *call)
                                  &o->settings, &start);
     struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
     ORL_THEN(result, command_renderer(call, &limits));
-    const struct orl_search_params params = {
-        .size_divide = o->size_divide, .views = (size_t)o->views, .gain_db = o->gain_db,
-        .budget_s = o->budget_s,
-        .on_trial = call->common->quiet ? NULL : print_trial, .progress = call->progress};
+    const struct orl_search_params params = {ORL_SEARCH_OPTIONS(ORL_OPTION_COPY)
+                                             .on_trial = call->common->quiet ? NULL : print_trial,
+                                             .progress = call->progress};
     if (result == ORL_OK && !call->common->quiet)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
     ORL_THEN(result, orl_search_run(call->gpu, call->renderer, call->scene, &params, &start, &o->keys, &search));

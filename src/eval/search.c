@@ -153,7 +153,7 @@ enum orl_result orl_search_run(struct orl_gpu *gpu, struct orl_renderer *rendere
                              .params = *params, .start_s = orl_time_s(), .complete = true};
     ORL_REQUIRE(s->log, params->size_divide >= 1 && params->size_divide <= ORL_SEARCH_DIVIDE_MAX);
     enum orl_result result = check_keys(s->log, keys);
-    ORL_THEN(result, orl_validation_load(s->log, scene, params->views, params->size_divide, &s->validation));
+    ORL_THEN(result, orl_validation_load(s->log, scene, (size_t)params->views, params->size_divide, &s->validation));
     struct orl_trial first = {.key = NULL};
     bool same;
     ORL_THEN(result, try_choice(s, start, &first, &same));
@@ -172,7 +172,8 @@ enum orl_result orl_search_backdrop(const struct orl_log *log, struct orl_render
 {
     struct orl_validation validation = {0};
     struct orl_score scores[2] = {{0}};
-    enum orl_result result = orl_validation_load(log, scene, params->views, params->size_divide, &validation);
+    enum orl_result result = orl_validation_load(log, scene, (size_t)params->views, params->size_divide,
+                                                 &validation);
     for (int rests = 0; rests < 2; rests++) {
         scene->backdrop_rests = rests;
         ORL_THEN(result, orl_score_measure(log, renderer, &validation, &choice->params, params->progress,

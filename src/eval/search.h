@@ -8,6 +8,7 @@
 
 #include "eval/choice.h"
 #include "eval/validation.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 
 enum { ORL_SEARCH_DIVIDE_MAX = 16 };
@@ -20,12 +21,15 @@ struct orl_trial {
     bool kept;                         // better than all before (orl_score_better)
 };
 
+// views 0: all. With a budget, the result depends on the machine's speed.
+#define ORL_SEARCH_OPTIONS(ROW) \
+    ROW(budget_s, "budget", NUMBER(0, 0, 1e6, "SECONDS"), \
+        "start no trial after so long; default: none") \
+    ROW(views, "views", INT(16, 1, 100000, "N"), "photographs to compare with, at most") \
+    ROW(size_divide, "size-divide", INT(1, 1, ORL_SEARCH_DIVIDE_MAX, "N"), "compare at 1/N of their size") \
+    ROW(gain_db, "gain", NUMBER(0.01, 0, 10, "DB"), "a change must bring so much")
 struct orl_search_params {
-    int size_divide;   // pictures have 1/n of the photographs' size, [1, ORL_SEARCH_DIVIDE_MAX]
-    size_t views;      // greatest number of photographs to compare with, evenly chosen; 0: all
-    double gain_db;    // a change is kept when it is better by at least this much (score.h)
-    double budget_s;   // no new trial starts after this time; 0: no limit. With a limit, the result
-                       // depends on the machine's speed
+    ORL_SEARCH_OPTIONS(ORL_OPTION_MEMBER)
     void (*on_trial)(void *priv, const struct orl_trial *trial); // may be NULL
     void *priv;
     const struct orl_progress *progress;

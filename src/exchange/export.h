@@ -3,15 +3,20 @@
 #define ORL_EXCHANGE_EXPORT_H
 
 #include "oriel/gpu.h"
+#include "oriel/option_row.h"
 #include "oriel/progress.h"
 #include "oriel/scene.h"
 
+#define ORL_EXPORT_OPTIONS(ROW) \
+    ROW(out, "out", TEXT("FILE|DIR"), "where; nerfstudio and blender make a folder") \
+    ROW(degree, "sh", INT(-1, 0, 2, "N"), \
+        "of splats and glb: degree of spherical harmonics; default 1") \
+    ROW(thin, "thin", FLAG, "of splats: a third scale, for programs that know no discs") \
+    ROW(at, "at", TEXT("PHOTO"), \
+        "of hdri: the photograph whose place it is; default: the middlemost") \
+    ROW(width, "width", INT(0, 16, 32768, "PX"), "of hdri; default 2048")
 struct orl_export_params {
-    const char *out; // file or folder, as the kind has it
-    int degree;      // of spherical harmonics, [0, 2]; -1: the kind's own choice
-    bool thin;       // splats: write a third scale
-    const char *at;  // hdri: the photograph whose place is meant; NULL: the middlemost
-    int width;       // hdri: of the picture, pixels; 0: the kind's own choice
+    ORL_EXPORT_OPTIONS(ORL_OPTION_MEMBER)
     const char *shader_dir;
 };
 
