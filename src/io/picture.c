@@ -100,11 +100,6 @@ static enum orl_result open_file(const struct orl_log *log, const char *path, FI
     return ORL_OK;
 }
 
-static bool has_exif_head(const struct orl_picture_header *header)
-{
-    return header->exif_size > 6 && memcmp(header->exif, "Exif\0", 6) == 0;
-}
-
 // NULL: the colours are taken as sRGB.
 static struct orl_profile *make_profile(const struct orl_log *log, const char *path,
                                         const struct orl_picture_header *header)
@@ -120,7 +115,7 @@ static struct orl_profile *make_profile(const struct orl_log *log, const char *p
     if (header->gamma > 0 || told)
         return orl_profile_create_rgb(log, path, told ? &header->primaries : &orl_primaries_rec709,
                                       header->gamma > 0 ? 1 / header->gamma : 0);
-    if (!has_exif_head(header) ||
+    if (!header->exif ||
         orl_exif_decode(NULL, path, header->exif, header->exif_size, &exif) != ORL_OK ||
         !exif.adobe_rgb)
         return NULL;
@@ -150,7 +145,7 @@ static enum orl_result read_stream_header(const struct orl_log *log, const char 
     info->gain_map = header.gain_map;
     info->profiled = profile != NULL;
     orl_profile_destroy(&profile);
-    if (result == ORL_OK && has_exif_head(&header))
+    if (result == ORL_OK && header.exif)
         result = orl_exif_decode(log, path, header.exif, header.exif_size, exif);
     free(header.exif);
     free(header.icc);
