@@ -122,10 +122,12 @@ enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer 
     struct orl_frame frame = {0};
     struct orl_render_params params = *render;
     params.leave_out |= ORL_LAYER_NORMAL | ORL_LAYER_DEPTH;
-    *picture = *coverage = (struct orl_image){0};
+    *picture = (struct orl_image){0};
+    if (coverage)
+        *coverage = (struct orl_image){0};
     enum orl_result result = orl_renderer_draw(renderer, &heldout->view, &params, skip, &frame);
     ORL_THEN(result, orl_heldout_expose(log, scene, heldout->photo, render, &frame.color, picture));
-    if (result == ORL_OK) {
+    if (result == ORL_OK && coverage) {
         *coverage = frame.coverage;
         frame.coverage = (struct orl_image){0};
     }
@@ -139,14 +141,12 @@ enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_render
                                     const struct orl_render_params *render, const bool *skip,
                                     double *psnr_db, double *ssim)
 {
-    struct orl_image picture, coverage;
-    enum orl_result result =
-        orl_heldout_draw(log, renderer, scene, heldout, render, skip, &picture, &coverage);
+    struct orl_image picture;
+    enum orl_result result = orl_heldout_draw(log, renderer, scene, heldout, render, skip, &picture, NULL);
     if (result == ORL_OK) {
         *psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
         result = orl_metrics_ssim(log, &picture, &heldout->picture, ssim);
     }
     orl_image_finish(&picture);
-    orl_image_finish(&coverage);
     return result;
 }

@@ -41,7 +41,7 @@ enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_s
 
 // Renders the photograph's view without the photographs that `skip` marks (NULL: none), as
 // orl_renderer_draw does, and makes of it what the photograph's camera would show: *picture as of
-// orl_heldout_expose. *coverage is that of the frame. Both are empty after a failure.
+// orl_heldout_expose. *coverage (NULL: not wanted) is that of the frame. Both are empty after a failure.
 enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer *renderer,
                                  const struct orl_scene *scene, const struct orl_heldout *heldout,
                                  const struct orl_render_params *render, const bool *skip,

@@ -266,28 +266,21 @@ static enum orl_result find_of(const struct finder *f, size_t photo, const bool 
     int divide = (longer + ORL_OCCLUDERS_SIDE - 1) / ORL_OCCLUDERS_SIDE;
     struct orl_heldout shot;
     struct orl_occluder_pictures pictures = {0};
-    struct orl_image covered = {0};
-    const struct {
-        const struct orl_render_params *params;
-        struct orl_image *picture, *covered;
-    } ways[] = {{&f->nearest, &pictures.nearest, &covered},
-                {&f->consensus, &pictures.consensus, &pictures.covered},
-                {&f->points, &pictures.points, &covered}};
     if (orl_progress_cancelled(f->progress))
         return ORL_ERR_CANCELLED;
     orl_image_finish(&f->masks[photo]);
     set_skip(f, photo, removed);
     enum orl_result result = orl_heldout_load(f->log, f->scene, photo, divide, &shot);
-    for (size_t k = 0; result == ORL_OK && k < ORL_COUNT(ways); k++) {
-        orl_image_finish(&covered);
-        result = orl_heldout_draw(f->log, f->renderer, f->scene, &shot, ways[k].params, f->skip,
-                                  ways[k].picture, ways[k].covered);
-    }
+    ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->nearest, f->skip, &pictures.nearest,
+                                      NULL));
+    ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->consensus, f->skip,
+                                      &pictures.consensus, &pictures.covered));
+    ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->points, f->skip, &pictures.points,
+                                      NULL));
     if (result == ORL_OK) {
         pictures.photo = shot.picture;
         result = orl_occluder_mask(f->log, &pictures, &f->masks[photo], &f->shares[photo]);
     }
-    orl_image_finish(&covered);
     orl_image_finish(&pictures.covered);
     orl_image_finish(&pictures.nearest);
     orl_image_finish(&pictures.consensus);
