@@ -1,15 +1,17 @@
 #include "eval/eval.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "eval/flip.h"
 #include "eval/heldout.h"
-#include "eval/internal.h"
 #include "eval/view_figures.h"
+#include "io/picture.h"
 
 // Duration of the timed frames of each view.
 static const double seconds = 0.2;
@@ -86,6 +88,108 @@ static enum orl_result draw_and_time(struct job *job, const struct orl_view *vie
     return ORL_OK;
 }
 
+// --- pictures that accompany figures ---
+
+enum { AMPLIFY = 4 };
+
+// The photograph's name as a file name, without folders, and without its extension unless another
+// photograph differs by that alone.
+static void print_stem(const struct orl_scene *scene, size_t photo, char stem[ORL_PATH_SIZE])
+{
+    orl_path_print(stem, "", "%s", scene->photos[photo].name);
+    char *dot = strrchr(stem, '.');
+    if (dot && dot != stem && !strchr(dot, '/')) {
+        size_t alike = 0;
+        size_t length = (size_t)(dot - stem) + 1;
+        for (size_t i = 0; i < scene->photo_count; i++)
+            alike += strncmp(scene->photos[i].name, stem, length) == 0;
+        if (alike == 1)
+            *dot = '\0';
+    }
+    for (char *slash = stem; (slash = strchr(slash, '/'));)
+        *slash = '_';
+}
+
+// Photograph, rendering and their difference times AMPLIFY, from left to right.
+static enum orl_result beside(const struct orl_log *log, const struct orl_image *rendered,
+                              const struct orl_image *photograph, struct orl_image *panels)
+{
+    ORL_TRY(orl_image_init(log, panels, rendered->width * 3, rendered->height, 3, ORL_PIXEL_U8));
+    size_t row = (size_t)rendered->width * 3;
+    for (size_t y = 0; y < (size_t)rendered->height; y++) {
+        const uint8_t *a = rendered->u8 + y * row, *b = photograph->u8 + y * row;
+        uint8_t *to = panels->u8 + y * row * 3;
+        memcpy(to, b, row);
+        memcpy(to + row, a, row);
+        for (size_t i = 0; i < row; i++) {
+            int difference = AMPLIFY * abs(a[i] - b[i]);
+            to[2 * row + i] = (uint8_t)(difference > 255 ? 255 : difference);
+        }
+    }
+    return ORL_OK;
+}
+
+// Writes one view's pictures into an existing folder.
+static enum orl_result write_images(const struct job *job, size_t photo, const struct orl_image *rendered,
+                                    const struct orl_image *photograph)
+{
+    const struct orl_log *log = job->log;
+    const char *dir = job->params->image_dir, *method = job->eval->method;
+    struct orl_image panels = {0};
+    char stem[ORL_PATH_SIZE];
+    print_stem(job->scene, photo, stem);
+    enum orl_result result = beside(log, rendered, photograph, &panels);
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.photo.png", stem), photograph));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.png", stem, method), rendered));
+    ORL_THEN(result, orl_png_write(log, ORL_PATH(dir, "%s.%s.diff.png", stem, method), &panels));
+    orl_image_finish(&panels);
+    return result;
+}
+
+// --- pictures of other programs ---
+
+// False: there is none.
+static bool find_picture(const struct orl_scene *scene, const char *dir, size_t photo, char path[ORL_PATH_SIZE])
+{
+    static const char *const extensions[] = {"png", "jpg", "jpeg", "JPG"};
+    char stem[ORL_PATH_SIZE];
+    bool found = false;
+    print_stem(scene, photo, stem);
+    for (size_t i = 0; !found && i < ORL_COUNT(extensions); i++)
+        found = orl_path_is_file(orl_path_print(path, dir, "%s.%s", stem, extensions[i]));
+    return found;
+}
+
+// Reads another program's picture of the view at the photograph's size. All of it counts as covered,
+// F32 x1. ORL_ERR_NOT_FOUND, logged: there is none.
+static enum orl_result read_picture(const struct job *job, const struct orl_heldout *heldout, struct orl_image *picture,
+                                    struct orl_image *coverage)
+{
+    const struct orl_log *log = job->log;
+    const struct orl_scene *scene = job->scene;
+    const char *dir = job->params->pictures;
+    int width = heldout->picture.width, height = heldout->picture.height, n = heldout->divide;
+    struct orl_image other = {0};
+    char path[ORL_PATH_SIZE];
+    if (!find_picture(scene, dir, heldout->photo, path))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no picture of %s", dir,
+                        scene->photos[heldout->photo].name);
+    enum orl_result result = orl_picture_read(log, path, 3, &other);
+    // The size may differ, but the shape must agree within a pixel or two.
+    double skew = fabs((double)other.width * height - (double)other.height * width);
+    if (result == ORL_OK && skew > 2 * fmax(other.width, other.height))
+        result = orl_fail(log, ORL_ERR_DATA, "%s has %dx%d pixels, the photograph %dx%d", path,
+                          other.width, other.height, width, height);
+    bool as_photograph = other.width / n == width && other.height / n == height;
+    ORL_THEN(result, as_photograph ? orl_heldout_shrink(log, &other, n, picture)
+                                   : orl_bridge_resize(log, &other, width, height, picture));
+    ORL_THEN(result, orl_image_init(log, coverage, width, height, 1, ORL_PIXEL_F32));
+    for (int i = 0; result == ORL_OK && i < width * height; i++)
+        coverage->f32[i] = 1;
+    orl_image_finish(&other);
+    return result;
+}
+
 // --- one view ---
 
 static enum orl_result compare_radiance(const struct job *job, struct orl_eval_view *view,
@@ -135,16 +239,14 @@ static enum orl_result measure(struct job *job, struct orl_eval_view *view)
                                               params->divide > 1 ? params->divide : 1, &heldout);
     view->width = heldout.picture.width;
     view->height = heldout.picture.height;
-    ORL_THEN(result, params->pictures ? orl_eval_read_picture(job->log, job->scene, params->pictures,
-                                                              &heldout, &rendered, &coverage)
+    ORL_THEN(result, params->pictures ? read_picture(job, &heldout, &rendered, &coverage)
                                       : render(job, &heldout, view, &rendered, &coverage));
     ORL_THEN(result, orl_metrics_compare(job->log, &rendered, &heldout.picture, &coverage, &view->metrics));
     ORL_THEN(result, orl_flip_compare(job->log, &rendered, &heldout.picture, &view->flip));
     if (result == ORL_OK && job->eval->has_vehicle)
         result = compare_vehicle(job, view, &rendered, &heldout.picture, &coverage);
     if (result == ORL_OK && params->image_dir)
-        result = orl_eval_write_images(job->log, job->eval, params->image_dir, view->photo, &rendered,
-                                       &heldout.picture);
+        result = write_images(job, view->photo, &rendered, &heldout.picture);
     orl_image_finish(&coverage);
     orl_image_finish(&rendered);
     orl_heldout_finish(&heldout);
