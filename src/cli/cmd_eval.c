@@ -4,8 +4,8 @@
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "core/text.h"
+#include "eval/eval.h"
 #include "eval/stability.h"
-#include "eval/view_figures.h"
 #include "oriel/hdr.h"
 
 #define EVAL_OPTIONS(ROW) \

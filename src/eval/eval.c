@@ -10,7 +10,6 @@
 #include "core/memory.h"
 #include "eval/flip.h"
 #include "eval/heldout.h"
-#include "eval/view_figures.h"
 #include "io/picture.h"
 
 // Duration of the timed frames of each view.

@@ -75,7 +75,7 @@ struct orl_trim {
 };
 
 // Times of frames are processor time on a software renderer, else wall time. Frames of two models
-// are compared in turns (eval/pair_timing.h).
+// are compared in turns (eval/timing.h).
 // ORL_ERR_DATA: fewer than three training photographs, or a budget that cannot be kept.
 enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                              const struct orl_trim_params *params,

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "core/process.h"
-#include "eval/pair_timing.h"
+#include "eval/timing.h"
 #include "eval/trim_search.h"
 
 enum { ROUNDS_OF_FIRST = 5, ROUNDS_OF_TRIAL = 24, ROUNDS_OF_WHOLE = 64 };

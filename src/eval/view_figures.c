@@ -1,6 +1,5 @@
-#include "eval/view_figures.h"
-
 #include "core/json.h"
+#include "eval/eval.h"
 
 #define AT(member) offsetof(struct orl_eval_view, member)
 

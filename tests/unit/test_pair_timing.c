@@ -1,5 +1,5 @@
 // Two ways to draw a frame, timed by a clock whose noise is known.
-#include "eval/pair_timing.h"
+#include "eval/timing.h"
 
 #include <math.h>
 
