@@ -20,7 +20,6 @@ layout(rgba32f, binding = 0) uniform image2D picture;
 layout(rgba32f, binding = 1) readonly uniform image2D filled;
 layout(r32f, binding = 2) readonly uniform image2D depth; // < 0: estimated
 
-#define FILL_LEVEL filled
 #include "fill/fill.glsl"
 #ifdef FINISHED
 #include "gather/unfinished.glsl"
@@ -43,23 +42,23 @@ void compose(ivec2 parent)
         ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
         vec4 pixel = imageLoad(picture, at);
         bool known = fills == 1 && finer[k].a > 0.0;
-        vec3 filled = known ? finer[k].rgb / finer[k].a : vec3(0.0);
+        vec3 around = known ? finer[k].rgb / finer[k].a : vec3(0.0);
 #ifdef FINISHED
         float blur = pixel_blur(pixel);
         if (!pixel_is_finished(pixel))
             imageStore(picture, at,
-                       pixel_finished(blur > 0.0 ? softened(guesses, at, image_size, pixel.rgb, blur) : filled, false));
+                       pixel_finished(blur > 0.0 ? softened(guesses, at, image_size, pixel.rgb, blur) : around, false));
 #else
         bool on_surface = imageLoad(depth, at).r > 0.0;
         float weight = pixel_weight(pixel);
         vec3 own = weight > 0.0 ? pixel.rgb / weight : vec3(0.0);
-        own = layers == 1 ? pixel.rgb + (1.0 - weight) * filled : own;
+        own = layers == 1 ? pixel.rgb + (1.0 - weight) * around : own;
 #ifdef RADIANCE
         float blur = imageLoad(trusted, at).z - 1.0;
         own = blur > 0.0 ? softened(guesses, at, image_size, own, blur) : own;
 #endif
         // A pixel whose light is only a lower bound takes the light around it if that is brighter.
-        own = weight > 0.0 && !pixel_at_least(pixel) ? own : max(own, filled);
+        own = weight > 0.0 && !pixel_at_least(pixel) ? own : max(own, around);
         // With the splats' own colours, a surface between splats counts as covered.
         imageStore(picture, at,
                    pixel_finished(own, on_surface && (weight > 0.0 || points_show == 1)));

@@ -1,5 +1,5 @@
 // Reads the pyramid of hole filling, whose finest level has half the picture's size. The including
-// file defines FILL_LEVEL as the name of the level's image.
+// file declares the level's image, `filled`.
 // FAR: the values are those of fill/slope.glsl.
 #ifdef FAR
 #include "fill/slope.glsl"
@@ -24,13 +24,13 @@ vec4 slope_hard(vec4 value)
 // are computed at once, since they share their reads.
 void fill_finer(ivec2 parent, out vec4 finer[4])
 {
-    ivec2 last = imageSize(FILL_LEVEL) - 1;
+    ivec2 last = imageSize(filled) - 1;
     vec4 upper[3], lower[3]; // one entry for each of three columns
     for (int x = 0; x < 3; x++) {
         vec4 column[3];
         for (int y = 0; y < 3; y++) {
             ivec2 at = clamp(parent + ivec2(x, y) - 1, ivec2(0), last);
-            column[y] = slope_moved(slope_soft(imageLoad(FILL_LEVEL, at)), vec2(parent - at));
+            column[y] = slope_moved(slope_soft(imageLoad(filled, at)), vec2(parent - at));
         }
         upper[x] = 0.75 * column[1] + 0.25 * column[0];
         lower[x] = 0.75 * column[1] + 0.25 * column[2];

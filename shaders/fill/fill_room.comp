@@ -1,25 +1,10 @@
 // Completes the room: a place that no photograph shows takes the colours of the walls around it.
-// One invocation handles 2x2 pixels.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "fill/apply.glsl"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-layout(rgba32f, binding = 0) readonly uniform image2D filled;
 layout(rgba32f, binding = 1) uniform image2D room; // blended pixels of shared/pixel.glsl
 
-#define FILL_LEVEL filled
-#include "fill/fill.glsl"
-
-void main()
+void fill_pixel(ivec2 at, vec4 value)
 {
-    ivec2 parent = ivec2(gl_GlobalInvocationID.xy);
-    if (2 * parent.x >= image_size.x || 2 * parent.y >= image_size.y)
-        return;
-    vec4 finer[4];
-    fill_finer(parent, finer);
-    for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
-        ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
-        if (imageLoad(room, at).a == 0.0 && finer[k].a > 0.0)
-            imageStore(room, at, vec4(finer[k].rgb / finer[k].a, 1.0));
-    }
+    if (imageLoad(room, at).a == 0.0 && value.a > 0.0)
+        imageStore(room, at, vec4(value.rgb / value.a, 1.0));
 }

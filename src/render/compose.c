@@ -32,7 +32,7 @@ static void compose(const struct frame *frame)
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,
                              .bufs = {[2] = {.buf = unfinished}},
-                             .textures = {frame->paint->soften.guesses},
+                             .textures = {frame->paint->fill.guesses},
                              .images = {{frame->picture, 0, GL_READ_WRITE},
                                         {frame->paint->fill.level[0], 0, GL_READ_ONLY},
                                         {frame->surface.depth, 0, GL_READ_ONLY},
@@ -70,7 +70,7 @@ static void median(const struct frame *frame)
 
 const struct post_pass orl_post_passes[] = {
     {"fill", fills, orl_fill_color},
-    {"soften", softens, orl_soften_prepare},
+    {"soften", softens, orl_fill_guesses},
     {"compose", NULL, compose},
     {"median", takes_median, median},
     {"specks", orl_edges_find_specks, orl_edges_remove_specks},

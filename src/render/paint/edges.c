@@ -12,21 +12,14 @@ void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges)
 {
     orl_buf_destroy(gpu, &edges->list);
     orl_tex_destroy(gpu, &edges->painted);
-    edges->width = edges->height = 0;
 }
 
 enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height)
 {
-    if (edges->list && edges->width == width && edges->height == height)
-        return ORL_OK;
-    orl_buf_destroy(gpu, &edges->list);
-    edges->width = width;
-    edges->height = height;
     // Room for every pixel, since the number of listed pixels is unknown.
     size_t bytes = 16 * (1 + (size_t)width * (size_t)height);
     size_t most = orl_gpu_caps(gpu)->max_storage_block;
-    return orl_buf_create(gpu, ORL_OWNER_FRAME, "pixels at edges", bytes < most ? bytes : most,
-                          NULL, &edges->list);
+    return orl_make_room(gpu, "pixels at edges", bytes < most ? bytes : most, &edges->list);
 }
 
 // Runs `find` over all pixels to list some of them. `d` holds the rest of its dispatch, and is then

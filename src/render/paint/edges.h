@@ -6,12 +6,11 @@
 
 struct edges {
     struct orl_buf *list;  // shaders/edges/edge_list.glsl
-    int width, height;     // of the pictures that it is made for
     struct orl_tex *painted; // RG8, of each pixel: how much its best photograph varies there; fourth root of light
 };
 
-// Allocates for pictures of this size. Does nothing if the size is unchanged.
-enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height);
+// Makes room for the pixels of pictures of this size.
+enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height) ORL_CHECK_RESULT;
 void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges);
 // Whether the painter keeps `painted`, and specks go.
 bool orl_edges_find_specks(const struct frame *frame);

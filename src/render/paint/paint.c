@@ -12,7 +12,6 @@ void orl_paint_finish(struct orl_gpu *gpu, struct paint *paint)
 {
     orl_gather_finish(gpu, &paint->gather);
     orl_fill_finish(gpu, &paint->fill);
-    orl_soften_finish(gpu, &paint->soften);
     orl_soft_layer_finish(gpu, &paint->soft);
     orl_edges_finish(gpu, &paint->edges);
     orl_guess_finish(gpu, &paint->guess);
@@ -32,7 +31,6 @@ enum orl_result orl_paint_resize(const struct frame *frame)
     struct paint *paint = frame->paint;
     int width = frame->view->camera.width, height = frame->view->camera.height, states = state_count(frame);
     enum orl_result result = orl_fill_resize(frame->gpu, &paint->fill, width, height);
-    ORL_THEN(result, orl_soften_resize(frame->gpu, &paint->soften, width, height));
     if (result == ORL_OK && !frame->radiance)
         result = orl_edges_resize(frame->gpu, &paint->edges, width, height);
     ORL_THEN(result, orl_frame_target(frame, "what may be specks", orl_edges_find_specks(frame), GL_RG8,

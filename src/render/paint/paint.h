@@ -7,12 +7,10 @@
 #include "render/paint/gather.h"
 #include "render/paint/guess.h"
 #include "render/paint/soft_layer.h"
-#include "render/paint/soften.h"
 
 struct paint {
     struct gather gather;      // parameters of the photographs in use
     struct fill fill;
-    struct soften soften;
     struct soft_layer soft;
     struct edges edges;
     struct guess guess;

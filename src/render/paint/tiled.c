@@ -38,7 +38,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
-    d.images[3] = (struct orl_image_binding){frame->paint->soften.guesses, 0, GL_WRITE_ONLY};
+    d.images[3] = (struct orl_image_binding){frame->paint->fill.guesses, 0, GL_WRITE_ONLY};
     if (specks)
         d.images[5] = (struct orl_image_binding){frame->paint->edges.painted, 0, GL_WRITE_ONLY};
     if (frame->soft) {
@@ -48,7 +48,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
-    orl_tex_clear(frame->paint->soften.guesses, 0);
+    orl_tex_clear(frame->paint->fill.guesses, 0);
     orl_gpu_pass(frame->gpu, "gather", &d);
 }
 
