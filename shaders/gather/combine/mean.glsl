@@ -1,8 +1,7 @@
 // The weighted mean of all samples. When the photographs come in several batches, each batch
 // adds to the sums of the one before.
 #include "gather/each.glsl"
-
-vec4 sum;
+#include "gather/sum.glsl"
 
 void combine_begin(ivec2 at)
 {
@@ -13,10 +12,4 @@ void combine_add(photo source, Answer a)
 {
     vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     sum += a.weight > 0.0 ? vec4(color, 1.0) * a.weight : vec4(0.0);
-}
-
-void combine_end(ivec2 at, Point point)
-{
-    if (sum.a > 0.0)
-        imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
 }

@@ -10,10 +10,9 @@ const float LEAST_SAMPLES = 3.0;
 // Tolerance for rounding where all samples are alike; much less than a step of 8 bits.
 const float ROUNDING = 1e-4;
 
-vec4 sum; // sweep 0: values, their number; sweep 1: colour * weight, weight
-
 #if SWEEP == 0
 
+vec4 sum; // of values, and their number
 vec3 squares;
 
 void combine_begin(ivec2 at)
@@ -37,6 +36,7 @@ void combine_end(ivec2 at, Point point)
 }
 
 #else
+#include "gather/sum.glsl"
 
 vec3 mean, allowed;
 
@@ -55,12 +55,6 @@ void combine_add(photo source, Answer a)
     vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     bool inlier = all(lessThanEqual(abs(srgb_encode(color) - mean), allowed));
     sum += inlier && a.weight > 0.0 ? vec4(color, 1.0) * a.weight : vec4(0.0);
-}
-
-void combine_end(ivec2 at, Point point)
-{
-    if (sum.a > 0.0)
-        imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
 }
 
 #endif

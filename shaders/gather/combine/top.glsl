@@ -36,8 +36,9 @@ void combine_end(ivec2 at, Point point)
 
 #else
 
+#include "gather/sum.glsl"
+
 float limit;
-vec4 sum;
 
 void combine_begin(ivec2 at)
 {
@@ -50,12 +51,6 @@ void combine_add(photo source, Answer a)
     vec3 color = photo_sample(source, a.pixel, a.mip).rgb;
     bool counts = a.weight > 0.0 && a.weight >= limit;
     sum += counts ? vec4(color, 1.0) * (1.0 + TRACE - limit / a.weight) : vec4(0.0);
-}
-
-void combine_end(ivec2 at, Point point)
-{
-    if (sum.a > 0.0)
-        imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
 }
 
 #endif

@@ -2,8 +2,7 @@
 // not differ by photographs, so that none is compared with the others.
 #include "gather/each.glsl"
 #include "gather/radiance/alone.glsl"
-
-vec4 sum;
+#include "gather/sum.glsl"
 
 void combine_begin(ivec2 at)
 {
@@ -16,10 +15,4 @@ void combine_add(photo source, Answer a)
     float weight = a.weight > 0.0 && texel.a > 0.0 ? a.weight * confidence_alone(source, texel)
                                                    : 0.0;
     sum += weight > 0.0 ? vec4(texel.rgb, 1.0) * weight : vec4(0.0);
-}
-
-void combine_end(ivec2 at, Point point)
-{
-    if (sum.a > 0.0)
-        imageStore(accumulated, at, pixel_blended(sum.rgb, sum.a, false));
 }
