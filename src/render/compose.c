@@ -1,4 +1,4 @@
-#include "render/compose.h"
+#include "render/internal.h"
 
 #include "render/frame/method.h"
 #include "render/paint/paint.h"

@@ -3,13 +3,6 @@
 #include <string.h>
 
 #include "render/frame/method.h"
-#include "render/hull/voxel_proxy.h"
-#include "render/paint/gather.h"
-#include "render/paint/tiled.h"
-#include "render/papers/billboards.h"
-#include "render/papers/princ.h"
-#include "render/photos/select.h"
-#include "render/proxy/proxy.h"
 
 const char *orl_method_asks(const struct orl_method *method)
 {

@@ -4,13 +4,6 @@
 
 #include "core/memory.h"
 #include "render/frame/method.h"
-#include "render/hull/voxel_proxy.h"
-#include "render/paint/gather.h"
-#include "render/paint/tiled.h"
-#include "render/papers/billboards.h"
-#include "render/papers/princ.h"
-#include "render/photos/select.h"
-#include "render/proxy/proxy.h"
 
 #define SLOT_DEFAULT(field, type, preset, readers, help) .field = preset,
 #define FILE_DEFAULT(field, preset, readers, help) .field = preset,

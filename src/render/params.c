@@ -5,9 +5,6 @@
 
 #include "core/file.h"
 #include "render/frame/method.h"
-#include "render/hull/voxel_proxy.h"
-#include "render/paint/gather.h"
-#include "render/papers/billboards.h"
 #include "render/proxy/proxy.h"
 
 // --- names ---

@@ -1,4 +1,4 @@
-#include "render/read_back.h"
+#include "render/internal.h"
 
 #include <string.h>
 

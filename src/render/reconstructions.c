@@ -1,6 +1,12 @@
-#include "render/reconstructions.h"
-
+// A frame as the mean of pictures that differ in the size of the splats and in their place by parts of a pixel.
+//
+// At silhouettes, in gaps and between surfaces that lie close together, the depth of a pixel depends
+// on how large the splats are drawn and where they fall on the grid of pixels, and no choice is right
+// everywhere. What the pictures agree on stays as it is, and what they differ in is averaged, as an
+// accumulation buffer (Haeberli and Akeley 1990) does for what differs within a pixel.
 #include <math.h>
+
+#include "render/internal.h"
 
 #include "render/proxy/proxy.h"
 #include "shared/render_blocks.h"

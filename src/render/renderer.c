@@ -3,17 +3,15 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/compose.h"
 #include "render/frame/method.h"
 #include "render/hull/prefetch.h"
 #include "render/hull/voxel_proxy.h"
+#include "render/internal.h"
 #include "render/paint/paint.h"
 #include "render/papers/room.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 #include "render/proxy/proxy.h"
-#include "render/read_back.h"
-#include "render/reconstructions.h"
 
 enum { PROXIES_MAX = 4 };
 

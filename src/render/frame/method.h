@@ -34,6 +34,15 @@ struct orl_painter {
     enum orl_result (*paint)(struct frame *frame);
 };
 
+// --- the implementations; what each does is said where it is defined ---
+
+extern const struct orl_proxy_kind orl_proxy_splats, orl_proxy_mesh, orl_proxy_hull, orl_proxy_voxels;
+extern const struct orl_selection orl_select_all, orl_select_nearest, orl_select_preselect, orl_select_princ;
+extern const struct orl_combine orl_combine_mean;
+extern const struct orl_painter orl_paint_gather, orl_paint_tiled, orl_paint_points, orl_paint_billboards;
+// Photographs of orl_select_princ beside those by direction, for surfaces that these see too obliquely.
+enum { ORL_PRINC_EXTRAS = 3 };
+
 // The `index`-th implementation of the slot `key` (methods.c); NULL past the last, or if it is not a
 // slot.
 const void *orl_slot_at(const char *key, size_t index);

@@ -6,8 +6,6 @@
 #include "render/proxy/mesh_proxy.h"
 #include "render/hull/voxels.h"
 
-extern const struct orl_proxy_kind orl_proxy_hull, orl_proxy_voxels;
-
 // State of orl_proxy_hull and orl_proxy_voxels.
 struct voxel_state {
     struct mesh_state mesh;  // of orl_proxy_hull; first: see mesh_proxy.h

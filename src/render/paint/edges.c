@@ -1,6 +1,5 @@
-#include "render/paint/edges.h"
-
 #include "render/paint/paint.h"
+
 #include "shared/render_blocks.h"
 
 enum {

@@ -1,7 +1,5 @@
 // Hole filling in image space by the pull-push of Gortler 1996: background depth and colour for
 // pixels that nothing covers.
-#include "render/paint/fill.h"
-
 #include "core/memory.h"
 #include "render/frame/method.h"
 #include "render/paint/paint.h"

@@ -1,4 +1,4 @@
-#include "render/paint/gather.h"
+#include "render/paint/paint.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/paint/paint.h"
+#include "render/frame/method.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 #include "shared/constants.h"
@@ -345,6 +345,7 @@ static enum orl_result paint_gather(struct frame *frame)
 }
 
 const struct orl_combine orl_combine_mean = {"mean", .sweeps = 1};
+// Runs shaders/gather/gather.comp with the method's slots, in batches of as many photographs as are resident together.
 const struct orl_painter orl_paint_gather = {
     .name = "gather", .needs = "", .reads_normals = reads_normals, .paint = paint_gather};
 
@@ -367,5 +368,6 @@ static bool always(const struct frame *frame)
     return true;
 }
 
+// Shows the proxy's own colours, of splats or of a mesh's vertices.
 const struct orl_painter orl_paint_points = {
     .name = "points", .needs = "", .reads_normals = always, .paint = paint_points};

@@ -1,8 +1,7 @@
-#include "render/paint/guess.h"
+#include "render/paint/paint.h"
 
 #include <stdio.h>
 
-#include "render/paint/paint.h"
 #include "shared/constants.h"
 
 enum {

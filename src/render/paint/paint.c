@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "render/frame/method.h"
+
 enum orl_result orl_paint_init(struct orl_gpu *gpu, size_t photo_count, struct paint *paint)
 {
     memset(paint, 0, sizeof *paint);

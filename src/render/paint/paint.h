@@ -1,12 +1,121 @@
-// Private to src/render: what the passes that make a picture's colours keep between frames.
+// Private to src/render: the passes that make a picture's colours, and what they keep between frames.
 #ifndef ORL_RENDER_PAINT_H
 #define ORL_RENDER_PAINT_H
 
-#include "render/paint/edges.h"
-#include "render/paint/fill.h"
-#include "render/paint/gather.h"
-#include "render/paint/guess.h"
+#include "render/frame/frame.h"
 #include "render/paint/soft_layer.h"
+#include "shared/render_blocks.h"
+
+// --- gather.c: the shaders' parameters of photographs ---
+
+enum { PHOTO_ROWS = 7 };  // image binding of shaders/gather/photo.glsl
+
+struct gather {
+    struct photo_data *list;    // parameters of the photographs of one dispatch
+    struct orl_buf *photos;     // the same on the device
+    struct orl_tex *photo_rows; // view of `photos` as RGBA32F texels
+    struct orl_buf *tile_lists; // listed photographs of each tile
+    struct orl_buf *unfinished; // marks of the last tiled painter: gather/unfinished.glsl
+    char *options;              // owned: defines RENDER_OPTIONS (render_blocks.h)
+};
+
+enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct gather *gather);
+void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather);
+// Side of the tiles that share a list of photographs, pixels. It follows the photographs' pixels, since
+// a list that serves a larger part of the scene misses what one photograph sees between others.
+int orl_tile_side(const struct frame *frame);
+// Makes the parameters of a program that reads photographs, and uploads those of this dispatch:
+// `count` photographs of frame->chosen from `first` on, which must be resident.
+struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count);
+// The program of the shader `file` with the declaration of the options and `defines` (NULL: none).
+struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
+                                 const struct orl_slot *slots, const char *defines);
+// The files of the method's slots for orl_prog_get.
+enum { GATHER_SLOTS = 5 };
+struct gather_slots {
+    char files[GATHER_SLOTS][64];
+    struct orl_slot slots[GATHER_SLOTS];
+};
+void orl_gather_slots(const struct frame *frame, struct gather_slots *out);
+// Puts another file into a slot.
+void orl_gather_set_slot(struct gather_slots *slots, const char *slot, const char *file);
+// Empties the picture and what belongs to it.
+void orl_gather_clear(const struct frame *frame);
+// Ensures room for `bytes` in *buf, whose contents may be lost.
+enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
+                              struct orl_buf **buf);
+
+// For a progressive frame: gives pixels that no photograph has painted the colours of the proxy, if
+// photographs are absent. Does nothing in the first frame of which that is so: without normals, the proxy has
+// no colours.
+enum orl_result orl_gather_underpaint(const struct frame *frame) ORL_CHECK_RESULT;
+
+// --- fill.c: background depth and colour for pixels that nothing covers, and input of the blur on estimated depth,
+// done by shaders/fill/compose.comp ---
+
+enum { FILL_LEVELS_MAX = 17 };
+
+struct fill {
+    struct image_block block; // parameters of the passes
+    int levels;               // of the picture
+    // The pyramid: value * weight, weight. Level 0 has half the picture's size.
+    struct orl_tex *level[FILL_LEVELS_MAX];
+    struct orl_tex *guesses; // mipmapped sums over 2x2 pixels of (colour, 1) on estimated depth
+};
+
+// Makes the textures fit pictures of this size.
+enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height) ORL_CHECK_RESULT;
+void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
+// Writes the estimated background depth ("guess" in identifiers), as negative values, where the
+// surface has none. With fill=ground it is no farther than the scene's ground.
+void orl_fill_depth(const struct frame *frame);
+// Completes the picture of a room where no photograph shows it.
+void orl_fill_room(const struct frame *frame, struct orl_tex *room);
+// Spreads the blended colours over fill->level[0]. Painters that finish pixels have already written
+// sums over 2x2 pixels of (colour, 1) there. In radiance, clipped pixels first take the light
+// around them. Before a room only colours of surfaces count.
+void orl_fill_color(const struct frame *frame);
+// Makes the mipmaps of fill->guesses. Painters that finish pixels have written the sums; for radiance they are
+// made here.
+void orl_fill_guesses(const struct frame *frame);
+
+// --- guess.c: guessed depth moves to where photographs do not see past it ---
+
+struct guess {
+    struct orl_buf *costs, *sums;         // per cell and plane: shaders/guess/planes.glsl
+    struct orl_tex *estimated, *picked;   // per cell, R32F: inverse depth; share of it
+};
+
+// Allocates for pictures of this size. Does nothing if the frame tries no depths.
+enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess);
+void orl_guess_finish(struct orl_gpu *gpu, struct guess *guess);
+// True if this frame tries depths: the method asks for it, and the costs fit into a storage buffer.
+bool orl_guess_applies(const struct frame *frame);
+// Moves the estimated background depth to where few photographs see past it and the others agree,
+// from the estimate to infinity. `choice`: the dispatch of shaders/gather/choose.comp, with the
+// parameters `block`, that has run. It runs again for tiles with estimated depth, since other
+// photographs see the new depths best.
+void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choice,
+                     const struct gather_block *block);
+
+// --- edges.c: what single pixels show wrongly: specks, and depth edges that are not antialiased ---
+
+struct edges {
+    struct orl_buf *list;  // shaders/edges/edge_list.glsl
+    struct orl_tex *painted; // RG8, of each pixel: how much its best photograph varies there; fourth root of light
+};
+
+// Makes room for the pixels of pictures of this size.
+enum orl_result orl_edges_resize(struct orl_gpu *gpu, struct edges *edges, int width, int height) ORL_CHECK_RESULT;
+void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges);
+// Whether the painter keeps `painted`, and specks go.
+bool orl_edges_find_specks(const struct frame *frame);
+// Gives specks the colour of what surrounds them.
+void orl_edges_remove_specks(const struct frame *frame);
+// Averages the finished colours across depth discontinuities.
+void orl_edges_antialias(const struct frame *frame);
+
+// --- paint.c ---
 
 struct paint {
     struct gather gather;      // parameters of the photographs in use

@@ -1,7 +1,8 @@
-#include "render/paint/tiled.h"
-
+// The painter of method oriel. It lists the best photographs of each tile of the screen, so that the cost of a pixel
+// does not grow with the number of photographs.
 #include <stdio.h>
 
+#include "render/frame/method.h"
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"

@@ -27,6 +27,4 @@ struct billboard {
 bool orl_billboard_choose(const struct ranked_photo *ranked, size_t count, const uint32_t *seen,
                           size_t words, struct billboard *out);
 
-extern const struct orl_painter orl_paint_billboards;
-
 #endif

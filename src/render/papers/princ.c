@@ -1,7 +1,5 @@
 // The photographs that Princ 2014, 2.3.2, takes: those whose direction agrees best with the view's,
 // and some more for surfaces that these see too obliquely.
-#include "render/papers/princ.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +8,7 @@
 #include "core/order.h"
 #include "core/vec3.h"
 #include "render/frame/frame.h"
+#include "render/proxy/proxy.h"
 #include "render/photos/select.h"
 #include "scene/depth_buffer.h"
 

@@ -5,8 +5,6 @@
 #include "render/frame/method.h"
 #include "render/photos/photos.h"
 
-extern const struct orl_selection orl_select_all, orl_select_nearest, orl_select_preselect;
-
 // True if the frame may be painted from the photograph.
 bool orl_frame_may_use(const struct frame *frame, size_t photo);
 // The penalty of shaders/shared/penalty.h for a photograph and a world point; negative if the point

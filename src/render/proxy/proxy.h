@@ -3,6 +3,7 @@
 #define ORL_RENDER_PROXY_H
 
 #include "render/frame/frame.h"
+#include "render/frame/method.h"
 
 // A picture that receives the proxy's own colours (shaders/shared/pixel.glsl). Other pixels are
 // left unchanged.
@@ -46,9 +47,6 @@ struct orl_proxy_kind {
     void (*color)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
                   const void *target, const struct paint_into *into);
 };
-extern const struct orl_proxy_kind orl_proxy_splats; // splats.c
-extern const struct orl_proxy_kind orl_proxy_mesh;   // mesh_proxy.c
-// Those of silhouettes are in hull/voxel_proxy.h.
 
 // Extent of the proxy's vertices, world. A cloud has single points hundreds of times as far away as its
 // subject, and the box of all of them has its centre anywhere.
