@@ -154,33 +154,33 @@ static void the_nearest_two_weigh_by_their_arcs(void **state)
     for (int i = 0; i < 4; i++)
         add_photo(&f, look_around(turns[i], 4, 8, 8), red);
     struct orl_view view = look_around(0, 4, 8, 8);
-    struct ranked_photo ranked[4];
+    struct orl_ranked ranked[4];
     orl_rank_by_axis(&f.scene, &view, photos, 4, ranked);
-    assert_int_equal(ranked[0].photo, 1);
-    assert_int_equal(ranked[3].photo, 3);
-    assert_float_equal(ranked[1].angle, 0.3, 1e-12);
+    assert_int_equal(ranked[0].index, 1);
+    assert_int_equal(ranked[3].index, 3);
+    assert_float_equal(ranked[1].key, 0.3, 1e-12);
     struct billboard b;
     uint32_t seen[2] = {0xf, 0xf};
     assert_true(orl_billboard_choose(ranked, 4, seen, 1, &b));
-    assert_int_equal(b.photos, 1 | 2 << 16);
+    assert_int_equal(b.photos, 0 | 1 << 16);
     assert_float_equal(b.second, 1 - 0.3 / 0.4, 1e-6); // and the first 1 - 0.1 / 0.4
     seen[0] = 1 << 0 | 1 << 2; // 1 sees a part alone
     assert_true(orl_billboard_choose(ranked, 4, seen, 1, &b));
-    assert_int_equal(b.photos, 2 | 0 << 16);
+    assert_int_equal(b.photos, 1 | 2 << 16);
     assert_float_equal(b.second, 1 - 0.5 / 0.8, 1e-6);
     seen[0] = 1 << 3;
     assert_true(orl_billboard_choose(ranked, 4, seen, 1, &b));
     assert_int_equal(b.photos & 0xffff, 3);
     assert_float_equal(b.second, 0, 0);
     seen[0] = 0;
-    assert_true(orl_billboard_choose(ranked, 4, seen, 1, &b) && (b.photos & 0xffff) == 1);
+    assert_true(orl_billboard_choose(ranked, 4, seen, 1, &b) && (b.photos & 0xffff) == 0);
     seen[1] = 0;
     assert_false(orl_billboard_choose(ranked, 4, seen, 1, &b));
     view = look_around(-0.1, 4, 8, 8); // the axis of photograph 1
     orl_rank_by_axis(&f.scene, &view, photos, 4, ranked);
     seen[0] = 0xf;
     assert_true(orl_billboard_choose(ranked, 4, seen, 1, &b));
-    assert_int_equal(b.photos & 0xffff, 1);
+    assert_int_equal(b.photos & 0xffff, 0);
     assert_float_equal(b.second, 0, 1e-6);
     teardown(&f);
 }

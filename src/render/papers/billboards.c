@@ -18,26 +18,17 @@
 
 // --- two photographs for each voxel ---
 
-static int by_angle(const void *a, const void *b)
-{
-    const struct ranked_photo *x = a, *y = b;
-    if (x->angle != y->angle)
-        return x->angle < y->angle ? -1 : 1;
-    return (x->photo > y->photo) - (x->photo < y->photo);
-}
-
 void orl_rank_by_axis(const struct orl_scene *scene, const struct orl_view *view,
-                      const size_t *photos, size_t count, struct ranked_photo *ranked)
+                      const size_t *photos, size_t count, struct orl_ranked *ranked)
 {
     for (size_t i = 0; i < count; i++) {
         double across[3];
         const double *axis = view->cam_from_world.r[2];
         const double *other = scene->photos[photos[i]].view.cam_from_world.r[2];
         orl_cross3(axis, other, across);
-        ranked[i] = (struct ranked_photo){
-            photos[i], i, atan2(sqrt(orl_dot3(across, across)), orl_dot3(axis, other))};
+        ranked[i] = (struct orl_ranked){atan2(sqrt(orl_dot3(across, across)), orl_dot3(axis, other)), photos[i]};
     }
-    qsort(ranked, count, sizeof *ranked, by_angle);
+    qsort(ranked, count, sizeof *ranked, orl_order_ranked);
 }
 
 static bool has(const uint32_t *set, size_t photo)
@@ -45,29 +36,28 @@ static bool has(const uint32_t *set, size_t photo)
     return set[photo / 32] >> photo % 32 & 1;
 }
 
-// The first two of `ranked` that are in the set; returns how many there are.
-static int first_two(const struct ranked_photo *ranked, size_t count, const uint32_t *set,
-                     const struct ranked_photo *found[2])
+// The places of the first two of `ranked` that are in the set; returns how many there are.
+static int first_two(const struct orl_ranked *ranked, size_t count, const uint32_t *set, size_t found[2])
 {
     int n = 0;
     for (size_t i = 0; i < count && n < 2; i++)
-        if (has(set, ranked[i].photo))
-            found[n++] = &ranked[i];
+        if (has(set, ranked[i].index))
+            found[n++] = i;
     return n;
 }
 
-bool orl_billboard_choose(const struct ranked_photo *ranked, size_t count, const uint32_t *seen,
+bool orl_billboard_choose(const struct orl_ranked *ranked, size_t count, const uint32_t *seen,
                           size_t words, struct billboard *out)
 {
-    const struct ranked_photo *found[2] = {0};
+    size_t found[2] = {0};
     int n = first_two(ranked, count, seen, found);
     if (!n) // no photograph sees all of it
         n = first_two(ranked, count, seen + words, found);
     if (!n)
         return false;
-    double sum = n == 2 ? found[0]->angle + found[1]->angle : 0;
-    out->photos = (uint32_t)found[0]->row | (uint32_t)(n == 2 ? found[1]->row : 0) << 16;
-    out->second = sum > 0 ? (float)(1 - found[1]->angle / sum) : 0;
+    double sum = n == 2 ? ranked[found[0]].key + ranked[found[1]].key : 0;
+    out->photos = (uint32_t)found[0] | (uint32_t)found[1] << 16;
+    out->second = sum > 0 ? (float)(1 - ranked[found[1]].key / sum) : 0;
     return true;
 }
 
@@ -83,7 +73,7 @@ static int by_depth(const void *a, const void *b)
 
 // Fills `out` with the billboards before the view that photographs see; returns their number.
 static size_t list(const struct frame *frame, const struct voxel_state *state,
-                   const struct ranked_photo *ranked, size_t count, struct billboard *out)
+                   const struct orl_ranked *ranked, size_t count, struct billboard *out)
 {
     double least = 0.5 * orl_billboard_width(state);
     size_t n = 0;
@@ -142,27 +132,25 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
 }
 
 // Leaves the first `count` of `ranked` chosen, in that order.
-static void choose(struct frame *frame, struct ranked_photo *ranked, size_t count)
+static void choose(struct frame *frame, const struct orl_ranked *ranked, size_t count)
 {
     frame->chosen_count = count;
-    for (size_t i = 0; i < count; i++) {
-        ranked[i].row = i;
-        frame->chosen[i] = ranked[i].photo;
-    }
+    for (size_t i = 0; i < count; i++)
+        frame->chosen[i] = ranked[i].index;
 }
 
 // For a progressive frame: leaves those chosen that are on the device with their masks. A frame
 // reads one mask: the others come with later frames.
-static enum orl_result bring(struct frame *frame, struct ranked_photo *ranked)
+static enum orl_result bring(struct frame *frame, struct orl_ranked *ranked)
 {
     size_t kept = 0;
     bool has_read = false;
     ORL_TRY(orl_progressive_admit(frame, false));
     orl_rank_by_axis(frame->scene, frame->view, frame->chosen, frame->chosen_count, ranked);
     for (size_t i = 0; i < frame->chosen_count; i++) {
-        bool there = frame->photos->states[ranked[i].photo].has_mask;
+        bool there = frame->photos->states[ranked[i].index].has_mask;
         if (there || !has_read) {
-            ORL_TRY(orl_photos_require_mask(frame, ranked[i].photo));
+            ORL_TRY(orl_photos_require_mask(frame, ranked[i].index));
             has_read = has_read || !there;
             ranked[kept++] = ranked[i];
         } else {
@@ -174,16 +162,16 @@ static enum orl_result bring(struct frame *frame, struct ranked_photo *ranked)
 }
 
 // Brings the photographs nearest by angle to the device, as many as fit, and leaves only these
-// chosen. ranked: as orl_rank_by_axis, whose rows it corrects.
-static enum orl_result require(struct frame *frame, struct ranked_photo *ranked)
+// chosen. ranked: as orl_rank_by_axis.
+static enum orl_result require(struct frame *frame, struct orl_ranked *ranked)
 {
     size_t most = (size_t)frame->photos->slot_count;
     choose(frame, ranked, frame->chosen_count < most ? frame->chosen_count : most);
     if (frame->progressive)
         return bring(frame, ranked);
     for (size_t i = 0; i < frame->chosen_count; i++) {
-        ORL_TRY(orl_photos_require(frame, ranked[i].photo, false));
-        ORL_TRY(orl_photos_require_mask(frame, ranked[i].photo));
+        ORL_TRY(orl_photos_require(frame, ranked[i].index, false));
+        ORL_TRY(orl_photos_require_mask(frame, ranked[i].index));
     }
     return ORL_OK;
 }
@@ -193,7 +181,7 @@ static enum orl_result paint(struct frame *frame)
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct voxel_state *state = frame->proxy->state;
     struct orl_buf *buf = NULL;
-    struct ranked_photo *ranked = orl_array(log, frame->scene->photo_count, sizeof *ranked);
+    struct orl_ranked *ranked = orl_array(log, frame->scene->photo_count, sizeof *ranked);
     struct billboard *all = orl_array(log, state->voxels.count, sizeof *all);
     orl_gather_clear(frame);
     enum orl_result result = ranked && all ? orl_select_all.choose(frame, 0) : ORL_ERR_MEMORY;

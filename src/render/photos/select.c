@@ -50,12 +50,6 @@ static double deviation(const struct frame *frame, size_t photo)
     return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) : 3.141592653589793; // includes NaN
 }
 
-static int by_index(const void *a, const void *b)
-{
-    const struct orl_ranked *x = a, *y = b;
-    return (x->index > y->index) - (x->index < y->index);
-}
-
 // Each photograph has weight 1 - p / p', where p' is the penalty of the first one left out, so that
 // it has faded out when another replaces it. All have weight 1 if none is left out.
 static enum orl_result choose_nearest(struct frame *frame, size_t most)
@@ -71,11 +65,12 @@ static enum orl_result choose_nearest(struct frame *frame, size_t most)
     qsort(all, count, sizeof *all, orl_order_ranked);
     double threshold = count > kept ? all[kept].key : INFINITY;
     kept = count < kept ? count : kept;
-    qsort(all, kept, sizeof *all, by_index);
+    for (size_t i = 0; i < kept; i++)
+        frame->chosen[i] = all[i].index;
+    qsort(frame->chosen, kept, sizeof *frame->chosen, orl_order_sizes);
     for (size_t i = 0; i < kept; i++) {
         // As in oriel, a trace of weight lets photographs that tie with the first left out paint.
-        double weight = threshold > 0 ? 1.00001 - all[i].key / threshold : 1;
-        frame->chosen[i] = all[i].index;
+        double weight = threshold > 0 ? 1.00001 - deviation(frame, frame->chosen[i]) / threshold : 1;
         frame->selected[i][0] = (float)weight;
     }
     frame->chosen_count = kept;
