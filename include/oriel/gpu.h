@@ -185,16 +185,12 @@ struct orl_image_binding {
     int level;
     GLenum access;             // GL_READ_ONLY, GL_WRITE_ONLY or GL_READ_WRITE
 };
-struct orl_buf_binding {
-    const struct orl_buf *buf; // NULL: not bound
-    size_t offset, size;       // size 0: to the end
-};
 // One compute dispatch; array index = binding point of its kind.
 struct orl_dispatch {
     struct orl_prog *prog;
     const void *params;        // contents of the std140 block at uniform binding 0
     size_t params_size;        // its bytes, at least the size of the program's block
-    struct orl_buf_binding bufs[ORL_BINDINGS_MAX];
+    const struct orl_buf *bufs[ORL_BINDINGS_MAX]; // NULL: not bound
     const struct orl_tex *textures[ORL_BINDINGS_MAX];
     struct orl_image_binding images[ORL_BINDINGS_MAX];
     int image_layers[ORL_BINDINGS_MAX]; // of arrays: 0: all layers; n: layer n - 1 only

@@ -21,22 +21,12 @@ static struct orl_gpu_memory *find_row(struct orl_gpu *gpu, enum orl_owner owner
     return row;
 }
 
-void orl_gpu_count_bytes(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
-                         size_t bytes)
+void orl_gpu_count(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, ptrdiff_t bytes, int objects)
 {
     struct orl_gpu_memory *row = find_row(gpu, owner, tag);
-    row->bytes += bytes;
-    row->objects++;
-    gpu->live_bytes += bytes;
-}
-
-void orl_gpu_uncount_bytes(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
-                           size_t bytes)
-{
-    struct orl_gpu_memory *row = find_row(gpu, owner, tag);
-    row->bytes -= bytes;
-    row->objects--;
-    gpu->live_bytes -= bytes;
+    row->bytes += (size_t)bytes;
+    row->objects += (unsigned)objects;
+    gpu->live_bytes += (size_t)bytes;
 }
 
 size_t orl_gpu_owner_bytes(const struct orl_gpu *gpu, enum orl_owner owner)

@@ -185,9 +185,9 @@ void orl_gpu_destroy(struct orl_gpu **handle)
     struct orl_gpu *gpu = *handle;
     if (!gpu)
         return;
-    if (gpu->live_bufs || gpu->live_texs)
-        orl_logf(gpu->log, ORL_LOG_ERROR, "%zu buffers, %zu textures still alive",
-                 gpu->live_bufs, gpu->live_texs);
+    for (size_t i = 0; i < gpu->memory_count; i++)
+        if (gpu->memory[i].objects)
+            orl_logf(gpu->log, ORL_LOG_ERROR, "%s: %u objects still alive", gpu->memory[i].tag, gpu->memory[i].objects);
     if (gpu->current) {
         orl_gpu_free_programs(gpu);
         orl_gpu_free_raster(gpu);

@@ -30,7 +30,7 @@ struct orl_gpu {
     struct orl_prog **progs; // programs made so far, owned
     size_t prog_count, prog_capacity;
     GLuint vertex_array, framebuffer; // of raster.c; 0: not created yet
-    size_t live_bufs, live_texs, live_bytes;
+    size_t live_bytes;
     struct orl_gpu_memory memory[ORL_MEMORY_ROWS_MAX];
     size_t memory_count;
 
@@ -81,10 +81,15 @@ void orl_gpu_free_raster(struct orl_gpu *gpu);
 // Logs every pending GL error as caused by `where`. True if there was none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);
 void orl_gpu_free_queries(struct orl_gpu *gpu);
-// Adds an object to its owner's and tag's bytes, and takes it away.
-void orl_gpu_count_bytes(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
-                         size_t bytes);
-void orl_gpu_uncount_bytes(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
-                           size_t bytes);
+// Adds objects and their bytes to those of their owner and tag; negative ones are taken away.
+void orl_gpu_count(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, ptrdiff_t bytes, int objects);
+
+// resource.c: what the texels of a format take. Blocks of side x side texels have so many bytes.
+struct texel_format {
+    GLenum format;
+    unsigned char bytes, side;
+    bool integer;
+};
+const struct texel_format *orl_texel_format(GLenum format);
 
 #endif

@@ -234,12 +234,9 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
 {
     if (!orl_prog_use(gpu, d->prog, d->params, d->params_size))
         return;
-    for (GLuint i = 0; i < ORL_BINDINGS_MAX; i++) {
-        const struct orl_buf_binding *b = &d->bufs[i];
-        if (b->buf)
-            glBindBufferRange(GL_SHADER_STORAGE_BUFFER, i, b->buf->id, (GLintptr)b->offset,
-                              (GLsizeiptr)(b->size ? b->size : b->buf->size - b->offset));
-    }
+    for (GLuint i = 0; i < ORL_BINDINGS_MAX; i++)
+        if (d->bufs[i])
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, d->bufs[i]->id);
     orl_gpu_bind(d->textures, d->images, d->image_layers);
     if (d->indirect) {
         glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, d->indirect->id);

@@ -15,8 +15,7 @@ enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const 
     glCreateBuffers(1, &buf->id);
     glNamedBufferStorage(buf->id, (GLsizeiptr)buf->size, size ? data : NULL, 0);
     glObjectLabel(GL_BUFFER, buf->id, -1, tag);
-    gpu->live_bufs++;
-    orl_gpu_count_bytes(gpu, owner, tag, buf->size);
+    orl_gpu_count(gpu, owner, tag, (ptrdiff_t)buf->size, 1);
     if (!orl_gpu_check_errors(gpu, tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device", tag, size);
         orl_buf_destroy(gpu, &buf);
@@ -34,8 +33,7 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
     if (!buf)
         return;
     glDeleteBuffers(1, &buf->id);
-    gpu->live_bufs--;
-    orl_gpu_uncount_bytes(gpu, buf->owner, buf->tag, buf->size);
+    orl_gpu_count(gpu, buf->owner, buf->tag, -(ptrdiff_t)buf->size, -1);
     free(buf);
     *handle = NULL;
 }
@@ -72,36 +70,22 @@ static int level_side(int side, int level)
     return side >> level ? side >> level : 1;
 }
 
-static size_t texel_bytes(GLenum format)
+const struct texel_format *orl_texel_format(GLenum format)
 {
-    static const struct {
-        GLenum format;
-        unsigned char bytes;
-    } table[] = {
-        {GL_R8, 1},       {GL_RG8, 2},      {GL_RGBA8, 4},    {GL_SRGB8_ALPHA8, 4},
-        {GL_R16F, 2},     {GL_RG16F, 4},    {GL_RGBA16F, 8},  {GL_R32F, 4},
-        {GL_RG32F, 8},    {GL_RGBA32F, 16}, {GL_R32UI, 4},    {GL_RG32UI, 8},
-        {GL_RGBA32UI, 16}, {GL_R16, 2},     {GL_R8UI, 1},     {GL_R16UI, 2},
-        {GL_DEPTH_COMPONENT32F, 4},
+    static const struct texel_format all[] = {
+        {GL_R8, 1, 1, false}, {GL_RG8, 2, 1, false}, {GL_RGBA8, 4, 1, false}, {GL_SRGB8_ALPHA8, 4, 1, false},
+        {GL_R16, 2, 1, false}, {GL_R16F, 2, 1, false}, {GL_RG16F, 4, 1, false}, {GL_RGBA16F, 8, 1, false},
+        {GL_R32F, 4, 1, false}, {GL_RG32F, 8, 1, false}, {GL_RGBA32F, 16, 1, false},
+        {GL_DEPTH_COMPONENT32F, 4, 1, false}, {GL_R8UI, 1, 1, true}, {GL_R16UI, 2, 1, true},
+        {GL_R32UI, 4, 1, true}, {GL_RG32UI, 8, 1, true}, {GL_RGBA32UI, 16, 1, true},
+        {GL_COMPRESSED_RED_RGTC1, 8, 4, false}, {GL_COMPRESSED_RG_RGTC2, 16, 4, false},
+        {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 4, false},
     };
-    for (size_t i = 0; i < ORL_COUNT(table); i++)
-        if (table[i].format == format)
-            return table[i].bytes;
-    return 16; // an upper bound, used for accounting only
-}
-
-// Bytes of a 4x4 block of a compressed format; 0: the format is not compressed.
-static size_t block_bytes(GLenum format)
-{
-    switch (format) {
-    case GL_COMPRESSED_RG_RGTC2:
-        return 16;
-    case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
-    case GL_COMPRESSED_RED_RGTC1:
-        return 8;
-    default:
-        return 0;
-    }
+    static const struct texel_format other = {.bytes = 16, .side = 1}; // an upper bound, used for accounting only
+    for (size_t i = 0; i < ORL_COUNT(all); i++)
+        if (all[i].format == format)
+            return &all[i];
+    return &other;
 }
 
 bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
@@ -125,12 +109,12 @@ int orl_mip_levels(int width, int height)
 
 size_t orl_tex_layer_bytes(const struct orl_tex_params *params)
 {
-    size_t bytes = 0, block = block_bytes(params->format);
+    const struct texel_format *format = orl_texel_format(params->format);
+    size_t bytes = 0, side = format->side;
     for (int level = 0; level == 0 || level < params->levels; level++) {
         size_t width = (size_t)level_side(params->width, level);
         size_t height = (size_t)level_side(params->height, level);
-        bytes += block ? (width + 3) / 4 * ((height + 3) / 4) * block
-                       : width * height * texel_bytes(params->format);
+        bytes += (width + side - 1) / side * ((height + side - 1) / side) * format->bytes;
     }
     return bytes;
 }
@@ -170,8 +154,7 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     }
     set_sampling(tex->id, p->linear, p->levels);
     glObjectLabel(GL_TEXTURE, tex->id, -1, p->tag);
-    gpu->live_texs++;
-    orl_gpu_count_bytes(gpu, tex->params.owner, tex->params.tag, tex->bytes);
+    orl_gpu_count(gpu, tex->params.owner, tex->params.tag, (ptrdiff_t)tex->bytes, 1);
     if (!orl_gpu_check_errors(gpu, p->tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device",
                  p->tag, p->width, p->height, tex->bytes);
@@ -211,8 +194,7 @@ void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
     if (!tex)
         return;
     glDeleteTextures(1, &tex->id);
-    gpu->live_texs--;
-    orl_gpu_uncount_bytes(gpu, tex->params.owner, tex->params.tag, tex->bytes);
+    orl_gpu_count(gpu, tex->params.owner, tex->params.tag, -(ptrdiff_t)tex->bytes, -1);
     free(tex);
     *handle = NULL;
 }
@@ -243,9 +225,7 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 void orl_tex_clear(struct orl_tex *tex, int level)
 {
     // Integer formats require integer client data; the other formats accept any.
-    GLenum f = tex->params.format;
-    bool integer = f == GL_R32UI || f == GL_RG32UI || f == GL_RGBA32UI || f == GL_R8UI ||
-                   f == GL_R16UI;
+    bool integer = orl_texel_format(tex->params.format)->integer;
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
     glClearTexImage(tex->id, level, integer ? GL_RED_INTEGER : GL_RED,
                     integer ? GL_UNSIGNED_INT : GL_FLOAT, NULL);
@@ -263,15 +243,14 @@ enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *b
     *out = NULL;
     struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
     ORL_TRY_MEMORY(tex);
-    size_t texels = buf->size / texel_bytes(format);
+    size_t texels = buf->size / orl_texel_format(format)->bytes;
     tex->params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1,
                                           .format = format, .owner = buf->owner,
                                           .tag = buf->tag};
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &tex->id);
     glTextureBuffer(tex->id, format, buf->id);
     glObjectLabel(GL_TEXTURE, tex->id, -1, buf->tag);
-    gpu->live_texs++;
-    orl_gpu_count_bytes(gpu, buf->owner, buf->tag, tex->bytes); // an object without bytes
+    orl_gpu_count(gpu, buf->owner, buf->tag, 0, 1);
     if (!orl_gpu_check_errors(gpu, buf->tag) || texels > (size_t)gpu->caps.max_buffer_texels) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no view of %zu texels on the device", buf->tag,
                  texels);

@@ -31,7 +31,7 @@ static void compose(const struct frame *frame)
     };
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,
-                             .bufs = {[2] = {.buf = unfinished}},
+                             .bufs = {[2] = unfinished},
                              .textures = {frame->paint->fill.guesses},
                              .images = {{frame->picture, 0, GL_READ_WRITE},
                                         {frame->paint->fill.level[0], 0, GL_READ_ONLY},

@@ -95,7 +95,7 @@ static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, c
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
-        .bufs = {[2] = {.buf = r->bounds}, [3] = {.buf = d->places}},
+        .bufs = {[2] = r->bounds, [3] = d->places},
         .images = {[2] = {r->values, 0, GL_READ_WRITE}, [3] = {d->mean_texels, 0, GL_READ_WRITE},
                    [4] = {d->square_texels, 0, GL_READ_WRITE}, [5] = {d->share_texels, 0, GL_READ_ONLY},
                    [6] = {r->seen, 0, GL_READ_ONLY}},

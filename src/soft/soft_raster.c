@@ -89,7 +89,7 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     ORL_TRY(fit_target(gpu, raster, view->camera.width, view->camera.height));
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
-        .bufs = {[2] = {.buf = raster->bounds}},
+        .bufs = {[2] = raster->bounds},
         .images = {[2] = {raster->values, 0, GL_READ_ONLY}, [6] = {raster->seen, 0, GL_WRITE_ONLY}},
         .groups = {orl_groups(raster->count, ORL_POINT_GROUP)},
         .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |

@@ -51,7 +51,7 @@ static void a_texture_shows_what_was_written_last(void **state)
     assert_int_equal(orl_tex_view_buffer(gpu, words, GL_R32UI, &shown), ORL_OK);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/fill_pull.comp", NULL, NULL),
                              .params = &block, .params_size = sizeof block,
-                             .bufs = {{words, 0, 0}, {notes, 0, 0}},
+                             .bufs = {words, notes},
                              .images = {{shown, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_SHADER_STORAGE_BARRIER_BIT};

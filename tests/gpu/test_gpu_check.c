@@ -42,7 +42,7 @@ static enum orl_result run(const char *shader, uint32_t word)
     orl_tex_clear(tex, 0); // some drivers leave what was in the memory
     struct { uint32_t word, rest[3]; } block = {word, {0}};
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/fill_pull.comp", NULL, NULL),
-                             .params = &block, .params_size = sizeof block, .bufs = {{buf, 0, 0}},
+                             .params = &block, .params_size = sizeof block, .bufs = {buf},
                              .textures = {tex},
                              .images = {{tex, 0, GL_READ_WRITE}, {view, 0, GL_READ_ONLY}},
                              .barrier = GL_BUFFER_UPDATE_BARRIER_BIT};

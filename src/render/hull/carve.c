@@ -34,7 +34,7 @@ static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
     orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, cone->distance.data);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL),
                              .params = block, .params_size = sizeof *block,
-                             .bufs = {{.buf = field}}, .textures = {tex},
+                             .bufs = {field}, .textures = {tex},
                              .groups = {orl_groups(voxels, CARVE_GROUP)},
                              .barrier = GL_SHADER_STORAGE_BARRIER_BIT |
                                         GL_BUFFER_UPDATE_BARRIER_BIT};

@@ -174,7 +174,7 @@ static enum orl_result see_from(const struct frame *frame, struct voxel_state *s
     struct orl_dispatch d = {
         .prog = orl_prog_get(frame->gpu, "hull/seen.comp", NULL, NULL),
         .params = &block, .params_size = sizeof block,
-        .bufs = {{.buf = state->centres}, {.buf = seen}},
+        .bufs = {state->centres, seen},
         .images = {{surface.depth, 0, GL_READ_ONLY}},
         .groups = {orl_groups(state->voxels.count, SEEN_GROUP)},
         .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT};

@@ -29,7 +29,7 @@ static void list(const struct frame *frame, struct orl_prog *find, struct orl_di
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d->groups);
     d->prog = find;
-    d->bufs[LIST].buf = frame->paint->edges.list;
+    d->bufs[LIST] = frame->paint->edges.list;
     d->barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                  GL_TEXTURE_UPDATE_BARRIER_BIT;
     orl_gpu_dispatch(frame->gpu, d);

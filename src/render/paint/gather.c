@@ -230,7 +230,7 @@ static enum orl_result choose_radiance(const struct frame *frame, const struct g
     ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles", across * down * ORL_RADIANCE_LIST * sizeof(int),
                           &frame->paint->gather.tile_lists));
     d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", slots->slots, NULL);
-    d.bufs[1].buf = frame->paint->gather.tile_lists;
+    d.bufs[1] = frame->paint->gather.tile_lists;
     d.groups[0] = orl_groups(across, 8);
     d.groups[1] = orl_groups(down, 8);
     d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
@@ -281,7 +281,7 @@ static enum orl_result gather(const struct frame *frame, size_t first, size_t co
     orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
     if (frame->radiance) {
         ORL_TRY(choose_radiance(frame, &slots, d));
-        d.bufs[1].buf = frame->paint->gather.tile_lists;
+        d.bufs[1] = frame->paint->gather.tile_lists;
     }
     orl_gpu_pass(frame->gpu, "gather", &d);
     return ORL_OK;

@@ -102,8 +102,8 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     int width = guess->picked->params.width, height = guess->picked->params.height;
     struct orl_dispatch d = *choice;
     d.params = &planes;
-    d.bufs[COSTS].buf = guess->costs;
-    d.bufs[SUMS].buf = guess->sums;
+    d.bufs[COSTS] = guess->costs;
+    d.bufs[SUMS] = guess->sums;
     d.images[0].access = GL_READ_WRITE;
     d.images[1] = (struct orl_image_binding){guess->estimated, 0, GL_READ_WRITE};
     d.images[2] = (struct orl_image_binding){guess->picked, 0, GL_READ_WRITE};

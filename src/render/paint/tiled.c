@@ -71,7 +71,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
                                                      rest_define(frame)),
                              .params = &block, .params_size = sizeof block,
-                             .bufs = {[1] = {.buf = g->tile_lists}, {.buf = g->unfinished}},
+                             .bufs = {[1] = g->tile_lists, g->unfinished},
                              .textures = {frame->photos->color, frame->photos->depth,
                                           [ORL_PHOTO_CHROMA] = frame->photos->chroma},
                              .images = {{frame->surface.depth, 0, GL_READ_ONLY},

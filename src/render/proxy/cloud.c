@@ -206,7 +206,7 @@ void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
         struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/splat_cull.comp", NULL, NULL),
                                  .params = block, .params_size = sizeof *block,
-                                 .bufs = {{.buf = chunk->args}, {.buf = chunk->list}},
+                                 .bufs = {chunk->args, chunk->list},
                                  .images = {{chunk->block_texels, 0, GL_READ_ONLY}},
                                  .groups = {orl_groups((size_t)chunk->block_count,
                                                        ORL_POINT_GROUP)},
