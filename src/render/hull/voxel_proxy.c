@@ -14,14 +14,6 @@
 #include "render/proxy/raster_target.h"
 #include "shared/hull_blocks.h"
 
-static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t max_bytes, void **out)
-{
-    (void)scene, (void)max_bytes; // update makes what is drawn
-    *out = orl_array(orl_gpu_log(gpu), 1, sizeof(struct voxel_state));
-    return *out ? ORL_OK : ORL_ERR_MEMORY;
-}
-
 static void forget(struct orl_gpu *gpu, struct voxel_state *state)
 {
     orl_mesh_state_finish(gpu, &state->mesh);
@@ -31,13 +23,9 @@ static void forget(struct orl_gpu *gpu, struct voxel_state *state)
     *state = (struct voxel_state){.said_endless = state->said_endless, .prefetch = state->prefetch};
 }
 
-static void destroy(struct orl_gpu *gpu, void **handle)
+static void finish(struct orl_gpu *gpu, void *state)
 {
-    if (!*handle)
-        return;
-    forget(gpu, *handle);
-    free(*handle);
-    *handle = NULL;
+    forget(gpu, state);
 }
 
 // Takes the voxels, and with `hull` their mesh, from what was prepared for the frame, or makes them.
@@ -99,9 +87,10 @@ void orl_hull_expect(struct proxy *proxy, struct prefetch *prefetch)
 }
 
 const struct orl_proxy_kind orl_proxy_hull = {
-    .name = "hull", .create = create, .update = update, .vertices = orl_mesh_vertices,
-    .destroy = destroy, .resize = orl_raster_target_resize,
-    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
+    .name = "hull", .state_size = sizeof(struct voxel_state), .update = update, .vertices = orl_mesh_vertices,
+    .finish = finish,
+    .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make,
+    .finish_target = orl_raster_target_finish, .target_bytes = orl_raster_target_bytes,
     .draw = orl_mesh_draw,
 };
 
@@ -120,13 +109,12 @@ double orl_billboard_width(const struct voxel_state *state)
 }
 
 static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
-                 const struct orl_render_params *params, bool normals, void *memory,
-                 struct surface *surface)
+                 const struct orl_render_params *params, bool normals, void *memory)
 {
     const struct voxel_state *state = handle;
     const struct raster_target *target = memory;
     struct billboard_block block = {
-        .view_size = {target->width, target->height},
+        .view_size = {target->surface.width, target->surface.height},
         .billboard_half = (float)(0.5 * orl_billboard_width(state)),
     };
     (void)params, (void)normals; // a billboard has no normal of its surface
@@ -137,20 +125,19 @@ static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view 
         .params = &block, .params_size = sizeof block,
         .inputs = {{state->centres, 0, 3 * sizeof(float), 3, GL_FLOAT, true}},
         .primitive = GL_TRIANGLES, .count = 6, .instances = state->voxels.count,
-        .targets = {target->depth, target->normal}, .depth = target->test,
+        .targets = {target->surface.depth, target->surface.normal}, .depth = target->test,
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
     };
     orl_pass_begin(gpu, "voxels");
     orl_gpu_raster(gpu, &raster);
     orl_pass_end(gpu);
-    *surface = (struct surface){.width = target->width, .height = target->height,
-                                .depth = target->depth, .normal = target->normal};
 }
 
 const struct orl_proxy_kind orl_proxy_voxels = {
-    .name = "voxels", .create = create, .update = update, .vertices = vertices,
-    .destroy = destroy, .resize = orl_raster_target_resize,
-    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes, .draw = draw,
+    .name = "voxels", .state_size = sizeof(struct voxel_state), .update = update, .vertices = vertices,
+    .finish = finish,
+    .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make,
+    .finish_target = orl_raster_target_finish, .target_bytes = orl_raster_target_bytes, .draw = draw,
 };
 
 // --- which photographs see a voxel ---

@@ -63,14 +63,9 @@ void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state)
     orl_mesh_finish(&state->mesh);
 }
 
-static void destroy(struct orl_gpu *gpu, void **handle)
+static void finish(struct orl_gpu *gpu, void *state)
 {
-    struct mesh_state *state = *handle;
-    if (!state)
-        return;
     orl_mesh_state_finish(gpu, state);
-    free(state);
-    *handle = NULL;
 }
 
 static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -87,16 +82,10 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
     return orl_mesh_state_upload(gpu, state);
 }
 
-static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t max_bytes, void **out)
+static enum orl_result init(struct orl_gpu *gpu, const struct orl_scene *scene, size_t max_bytes, void *state)
 {
-    struct mesh_state *state = orl_array(orl_gpu_log(gpu), 1, sizeof *state);
     (void)max_bytes; // a mesh is on the device as a whole
-    enum orl_result result = state ? load(gpu, scene, state) : ORL_ERR_MEMORY;
-    *out = state;
-    if (result != ORL_OK)
-        destroy(gpu, out);
-    return result;
+    return load(gpu, scene, state);
 }
 
 // Time steps of a sequence may have meshes of their own.
@@ -127,7 +116,7 @@ void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view,
 static struct mesh_block block_of(const struct mesh_state *state, const struct orl_view *view,
                                   const struct raster_target *target)
 {
-    struct mesh_block block = {.view_size = {target->width, target->height}};
+    struct mesh_block block = {.view_size = {target->surface.width, target->surface.height}};
     orl_mesh_range(state, view, &block.depth_near, &block.depth_far);
     orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view->camera, block.focal);
@@ -135,11 +124,10 @@ static struct mesh_block block_of(const struct mesh_state *state, const struct o
 }
 
 void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
-                   const struct orl_render_params *params, bool normals, void *memory,
-                   struct surface *surface)
+                   const struct orl_render_params *params, bool normals, void *memory)
 {
     const struct mesh_state *state = handle;
-    struct raster_target *target = memory;
+    const struct raster_target *target = memory;
     const struct mesh_block block = block_of(state, view, target);
     (void)params, (void)normals; // nothing to choose, and normals come along
     const struct orl_raster raster = {
@@ -148,14 +136,12 @@ void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_vie
         .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
                     .type = GL_FLOAT}},
         .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
-        .targets = {target->depth, target->normal}, .depth = target->test,
+        .targets = {target->surface.depth, target->surface.normal}, .depth = target->test,
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
     };
     orl_pass_begin(gpu, "mesh");
     orl_gpu_raster(gpu, &raster);
     orl_pass_end(gpu);
-    *surface = (struct surface){.width = target->width, .height = target->height,
-                                .depth = target->depth, .normal = target->normal};
 }
 
 // Draws the mesh again, with the colours of its vertices. Without colours it paints nothing.
@@ -183,8 +169,9 @@ static void color(struct orl_gpu *gpu, const void *handle, const struct orl_view
 }
 
 const struct orl_proxy_kind orl_proxy_mesh = {
-    .name = "mesh", .create = create, .update = update, .vertices = orl_mesh_vertices,
-    .destroy = destroy, .resize = orl_raster_target_resize,
-    .free_target = orl_raster_target_free, .target_bytes = orl_raster_target_bytes,
+    .name = "mesh", .state_size = sizeof(struct mesh_state), .init = init, .update = update,
+    .vertices = orl_mesh_vertices, .finish = finish,
+    .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make,
+    .finish_target = orl_raster_target_finish, .target_bytes = orl_raster_target_bytes,
     .draw = orl_mesh_draw, .color = color,
 };

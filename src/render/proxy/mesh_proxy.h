@@ -25,7 +25,6 @@ void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view,
 void orl_mesh_vertices(const void *state, const struct orl_scene *scene,
                        const float (**vertices)[3], size_t *count);
 void orl_mesh_draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
-                   const struct orl_render_params *params, bool normals, void *target,
-                   struct surface *surface);
+                   const struct orl_render_params *params, bool normals, void *target);
 
 #endif

@@ -60,9 +60,15 @@ enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *sc
                                  const struct orl_proxy_kind *kind, size_t max_bytes,
                                  struct proxy *proxy)
 {
-    *proxy = (struct proxy){.kind = kind};
-    ORL_TRY(kind->create(gpu, scene, max_bytes, &proxy->state));
-    return find_vertices(orl_gpu_log(gpu), proxy, scene);
+    const struct orl_log *log = orl_gpu_log(gpu);
+    *proxy = (struct proxy){.kind = kind, .state = orl_array(log, 1, kind->state_size)};
+    enum orl_result result = proxy->state ? ORL_OK : ORL_ERR_MEMORY;
+    if (result == ORL_OK && kind->init)
+        result = kind->init(gpu, scene, max_bytes, proxy->state);
+    ORL_THEN(result, find_vertices(log, proxy, scene));
+    if (result != ORL_OK)
+        orl_proxy_finish(gpu, proxy);
+    return result;
 }
 
 enum orl_result orl_proxy_update(const struct frame *frame)
@@ -79,21 +85,48 @@ enum orl_result orl_proxy_update(const struct frame *frame)
     return result;
 }
 
+static void free_target(struct orl_gpu *gpu, const struct orl_proxy_kind *kind, void **target)
+{
+    if (*target)
+        kind->finish_target(gpu, *target);
+    free(*target);
+    *target = NULL;
+}
+
 void orl_proxy_free_photo_target(struct orl_gpu *gpu, struct proxy *proxy)
 {
-    proxy->kind->free_target(gpu, &proxy->photo_target);
+    free_target(gpu, proxy->kind, &proxy->photo_target);
 }
 
 void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy)
 {
     if (!proxy->kind)
         return;
-    proxy->kind->free_target(gpu, &proxy->view_target);
-    proxy->kind->free_target(gpu, &proxy->photo_target);
-    proxy->kind->free_target(gpu, &proxy->coarse_target);
-    proxy->kind->destroy(gpu, &proxy->state);
+    free_target(gpu, proxy->kind, &proxy->view_target);
+    free_target(gpu, proxy->kind, &proxy->photo_target);
+    free_target(gpu, proxy->kind, &proxy->coarse_target);
+    if (proxy->state)
+        proxy->kind->finish(gpu, proxy->state);
+    free(proxy->state);
     free(proxy->aspects);
     memset(proxy, 0, sizeof *proxy);
+}
+
+// Makes *target fit the size.
+static enum orl_result resize(struct orl_gpu *gpu, const struct proxy *proxy, int width, int height, void **target)
+{
+    struct surface *surface = *target;
+    if (surface && surface->width == width && surface->height == height)
+        return ORL_OK;
+    free_target(gpu, proxy->kind, target);
+    *target = surface = orl_array(orl_gpu_log(gpu), 1, proxy->kind->target_size);
+    ORL_TRY_MEMORY(surface);
+    surface->width = width;
+    surface->height = height;
+    enum orl_result result = proxy->kind->make_target(gpu, proxy->state, surface);
+    if (result != ORL_OK)
+        free_target(gpu, proxy->kind, target);
+    return result;
 }
 
 enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
@@ -101,11 +134,11 @@ enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
                                const struct orl_render_params *params, bool normals,
                                void **target, struct surface *surface)
 {
-    ORL_TRY(proxy->kind->resize(gpu, proxy->state, view->camera.width,
-                                view->camera.height, target));
+    ORL_TRY(resize(gpu, proxy, view->camera.width, view->camera.height, target));
     if (proxy->kind->bring)
         ORL_TRY(proxy->kind->bring(proxy->state, view));
-    proxy->kind->draw(gpu, proxy->state, view, params, normals, *target, surface);
+    proxy->kind->draw(gpu, proxy->state, view, params, normals, *target);
+    *surface = *(const struct surface *)*target;
     return ORL_OK;
 }
 

@@ -14,32 +14,33 @@ struct paint_into {
     bool only_unpainted;     // pixels with a sample keep it
 };
 
-// One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size.
+// One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size, in a struct that
+// begins with the struct surface that is drawn.
 struct orl_proxy_kind {
     const char *name;
-    // max_bytes: of device memory that a proxy keeps to which can; 0: as it needs.
-    enum orl_result (*create)(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t max_bytes, void **state);
+    size_t state_size;
+    // Fills the state, zeros at first. max_bytes: of device memory that a proxy keeps to which can; 0: as it needs.
+    // NULL: update does.
+    enum orl_result (*init)(struct orl_gpu *gpu, const struct orl_scene *scene, size_t max_bytes, void *state);
     // Brings what depends on the frame's photographs and options up to date; *changed: the surfaces
     // are others now. NULL: nothing does.
     enum orl_result (*update)(const struct frame *frame, void *state, bool *changed);
     // Its vertices, which live as long as the state and the scene.
     void (*vertices)(const void *state, const struct orl_scene *scene, const float (**vertices)[3],
                      size_t *count);
-    void (*destroy)(struct orl_gpu *gpu, void **state);
-    // Allocates `target` (NULL at first) for the size. Does nothing if the size is unchanged.
-    enum orl_result (*resize)(struct orl_gpu *gpu, const void *state, int width, int height,
-                              void **target);
-    void (*free_target)(struct orl_gpu *gpu, void **target);
+    void (*finish)(struct orl_gpu *gpu, void *state); // also after a failure of init
+    size_t target_size; // of the struct
+    // Creates the textures of a target, whose surface has its size and which is else zeros.
+    enum orl_result (*make_target)(struct orl_gpu *gpu, const void *state, void *target);
+    void (*finish_target)(struct orl_gpu *gpu, void *target);
     // Bytes that a target of this size takes.
     size_t (*target_bytes)(const void *state, int width, int height);
     // Brings the data that `view` shows to the device. NULL: it is there.
     enum orl_result (*bring)(const void *state, const struct orl_view *view);
-    // Draws the surface that `view` sees. The textures of `surface` belong to the target. Without
-    // `normals` the normal is left unchanged, which saves a tenth of a software renderer's time.
+    // Draws the surface that `view` sees. Without `normals` the normal is left unchanged, which saves a tenth of a
+    // software renderer's time.
     void (*draw)(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
-                 const struct orl_render_params *params, bool normals, void *target,
-                 struct surface *surface);
+                 const struct orl_render_params *params, bool normals, void *target);
     // Brings to the device what `color` reads. NULL: it is there.
     enum orl_result (*bring_colors)(struct orl_gpu *gpu, void *state);
     // Writes the proxy's own colours, linear with weight 1, where its primitives are visible in a
@@ -89,7 +90,7 @@ void orl_proxy_finish(struct orl_gpu *gpu, struct proxy *proxy);
 void orl_proxy_free_photo_target(struct orl_gpu *gpu, struct proxy *proxy);
 // Brings the frame's proxy up to date, before its key is asked for.
 enum orl_result orl_proxy_update(const struct frame *frame);
-// Draws into *target, one of the proxy's own targets, which is resized to the view.
+// Draws into *target, one of the proxy's own targets, which is resized to the view. Its textures are the surface's.
 enum orl_result orl_proxy_draw(struct orl_gpu *gpu, const struct proxy *proxy,
                                const struct orl_view *view,
                                const struct orl_render_params *params, bool normals,

@@ -3,17 +3,15 @@
 #ifndef ORL_RENDER_RASTER_TARGET_H
 #define ORL_RENDER_RASTER_TARGET_H
 
-#include "oriel/gpu.h"
+#include "render/frame/frame.h"
 
 struct raster_target {
-    int width, height;
-    struct orl_tex *depth, *normal; // of struct surface
-    struct orl_tex *test;           // the depth test's own
+    struct surface surface;
+    struct orl_tex *test; // the depth test's own
 };
 
-enum orl_result orl_raster_target_resize(struct orl_gpu *gpu, const void *state, int width,
-                                         int height, void **out);
-void orl_raster_target_free(struct orl_gpu *gpu, void **handle);
+enum orl_result orl_raster_target_make(struct orl_gpu *gpu, const void *state, void *target);
+void orl_raster_target_finish(struct orl_gpu *gpu, void *target);
 size_t orl_raster_target_bytes(const void *state, int width, int height);
 
 #endif

@@ -1,29 +1,17 @@
 // Reconstructs depth from points: compute splatting, then pull-push (Airieau 2012, 5.1).
 #include "render/proxy/splats.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "core/memory.h"
 #include "render/frame/frame.h"
 #include "render/proxy/cloud_pages.h"
 
-static enum orl_result create(struct orl_gpu *gpu, const struct orl_scene *scene,
-                              size_t max_bytes, void **state)
+static enum orl_result init(struct orl_gpu *gpu, const struct orl_scene *scene, size_t max_bytes, void *state)
 {
-    struct cloud *cloud = orl_array(orl_gpu_log(gpu), 1, sizeof *cloud);
-    enum orl_result result =
-        !cloud       ? ORL_ERR_MEMORY
-        : scene->lod ? orl_cloud_pages_init(gpu, scene->lod, max_bytes, cloud)
-                     : orl_cloud_init(gpu, &scene->points, cloud);
-    if (result != ORL_OK) {
-        free(cloud);
-        cloud = NULL;
-    }
-    if (cloud)
-        cloud->near = (float)scene->near_distance;
-    *state = cloud;
-    return result;
+    struct cloud *cloud = state;
+    ORL_TRY(scene->lod ? orl_cloud_pages_init(gpu, scene->lod, max_bytes, cloud)
+                       : orl_cloud_init(gpu, &scene->points, cloud));
+    cloud->near = (float)scene->near_distance;
+    return ORL_OK;
 }
 
 static void vertices(const void *state, const struct orl_scene *scene, const float (**out)[3],
@@ -34,12 +22,9 @@ static void vertices(const void *state, const struct orl_scene *scene, const flo
     *count = scene->points.count;
 }
 
-static void destroy(struct orl_gpu *gpu, void **state)
+static void finish(struct orl_gpu *gpu, void *state)
 {
-    if (*state)
-        orl_cloud_finish(gpu, *state);
-    free(*state);
-    *state = NULL;
+    orl_cloud_finish(gpu, state);
 }
 
 // Number of pyramid levels, down to a size of one or two pixels. At least two, since level 0 is
@@ -64,7 +49,7 @@ static size_t target_bytes(const void *state, int width, int height)
 // Each level is half as large as the one before, rounded up. Loads outside read as empty.
 static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
 {
-    int width = t->width, height = t->height;
+    int width = t->surface.width, height = t->surface.height;
     for (int i = 1; i < t->levels; i++) {
         width = (width + 1) / 2;
         height = (height + 1) / 2;
@@ -77,26 +62,26 @@ static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
     return ORL_OK;
 }
 
-static void finish_target(struct orl_gpu *gpu, struct splat_target *target)
+static void finish_target(struct orl_gpu *gpu, void *memory)
 {
+    struct splat_target *target = memory;
     for (int i = 0; i < PYRAMID_LEVELS_MAX; i++) {
         orl_tex_destroy(gpu, &target->surfel_a[i]);
         orl_tex_destroy(gpu, &target->surfel_b[i]);
     }
     struct orl_tex **const textures[] = {
         &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
-        &target->chunk_splats, &target->pushed_depth, &target->depth, &target->normal,
+        &target->chunk_splats, &target->pushed_depth, &target->surface.depth, &target->surface.normal,
     };
     for (size_t i = 0; i < ORL_COUNT(textures); i++)
         orl_tex_destroy(gpu, textures[i]);
-    memset(target, 0, sizeof *target);
 }
 
-static enum orl_result make_target(struct orl_gpu *gpu, bool chunks, int width, int height,
-                                   struct splat_target *target)
+static enum orl_result make_target(struct orl_gpu *gpu, const void *state, void *memory)
 {
-    target->width = width;
-    target->height = height;
+    const struct cloud *cloud = state;
+    struct splat_target *target = memory;
+    int width = target->surface.width, height = target->surface.height;
     target->levels = pyramid_levels(width, height);
     const struct orl_tex_row rows[] = {
         {"splat depth", GL_R32UI, &target->splat_depth},
@@ -104,38 +89,12 @@ static enum orl_result make_target(struct orl_gpu *gpu, bool chunks, int width, 
         {"splat layer", GL_R32UI, &target->splat_layer},
         {"splats", GL_RG32UI, &target->splats},
         {"pushed depth", GL_R32F, &target->pushed_depth},
-        {"proxy depth", GL_R32F, &target->depth},
-        {"proxy normal", GL_RGBA16F, &target->normal},
+        {"proxy depth", GL_R32F, &target->surface.depth},
+        {"proxy normal", GL_RGBA16F, &target->surface.normal},
         {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
     };
     ORL_TRY(make_pyramid(gpu, target));
-    return orl_tex_create_rows(gpu, width, height, rows, ORL_COUNT(rows) - (chunks ? 0 : 1));
-}
-
-static void free_target(struct orl_gpu *gpu, void **target)
-{
-    if (*target)
-        finish_target(gpu, *target);
-    free(*target);
-    *target = NULL;
-}
-
-static enum orl_result resize(struct orl_gpu *gpu, const void *state, int width, int height,
-                              void **out)
-{
-    const struct cloud *cloud = state;
-    struct splat_target *target = *out;
-    if (target && target->width == width && target->height == height)
-        return ORL_OK;
-    free_target(gpu, out);
-    target = orl_array(orl_gpu_log(gpu), 1, sizeof *target);
-    *out = target;
-    enum orl_result result = target ? make_target(gpu, cloud->chunk_count > 1, width, height,
-                                                  target)
-                                    : ORL_ERR_MEMORY;
-    if (result != ORL_OK)
-        free_target(gpu, out);
-    return result;
+    return orl_tex_create_rows(gpu, width, height, rows, ORL_COUNT(rows) - (cloud->chunk_count > 1 ? 0 : 1));
 }
 
 // params: NULL if nothing is drawn.
@@ -252,7 +211,7 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
     } else {
         d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
         d.images[3] = (struct orl_image_binding){depth, 0, GL_READ_WRITE};
-        d.images[4] = (struct orl_image_binding){t->normal, 0, GL_WRITE_ONLY};
+        d.images[4] = (struct orl_image_binding){t->surface.normal, 0, GL_WRITE_ONLY};
     }
     set_level(block, level ? t->surfel_a[level] : t->splats, level);
     // One invocation handles one corner of the coarse level's pixels.
@@ -263,16 +222,16 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
 static void drop_outliers(struct orl_gpu *gpu, struct pyramid_block *block, int least,
                         struct splat_target *t)
 {
-    set_level(block, t->depth, 0);
+    set_level(block, t->surface.depth, 0);
     block->min_support = least;
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, NULL),
                              .params = block, .params_size = sizeof *block,
                              .images = {{t->pushed_depth, 0, GL_READ_ONLY},
-                                        {t->depth, 0, GL_WRITE_ONLY},
-                                        {t->normal, 0, GL_WRITE_ONLY}},
+                                        {t->surface.depth, 0, GL_WRITE_ONLY},
+                                        {t->surface.normal, 0, GL_WRITE_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups((t->width + 1) / 2, (t->height + 1) / 2, d.groups);
+    orl_pixel_groups((t->surface.width + 1) / 2, (t->surface.height + 1) / 2, d.groups);
     orl_gpu_dispatch(gpu, &d);
 }
 
@@ -296,13 +255,12 @@ static enum orl_result bring(const void *state, const struct orl_view *view)
 }
 
 static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
-                 const struct orl_render_params *params, bool normals, void *target,
-                 struct surface *surface)
+                 const struct orl_render_params *params, bool normals, void *target)
 {
     struct splat_target *t = target;
     struct splat_block block = splat_params(state, view, params);
     int min_support = (int)params->min_support;
-    const struct orl_tex *depth = min_support > 0 ? t->pushed_depth : t->depth;
+    const struct orl_tex *depth = min_support > 0 ? t->pushed_depth : t->surface.depth;
     orl_pass_begin(gpu, "splat");
     splat(gpu, state, &block, t);
     orl_pass_end(gpu);
@@ -310,8 +268,6 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
     resolve(gpu, state, &block, depth, normals, t);
     pull_push(gpu, view, min_support, depth, normals, t);
     orl_pass_end(gpu);
-    *surface = (struct surface){.width = t->width, .height = t->height, .depth = t->depth,
-                                .normal = t->normal};
 }
 
 static enum orl_result bring_colors(struct orl_gpu *gpu, void *state)
@@ -335,18 +291,18 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
             .params = &block, .params_size = sizeof block,
             .images = {{chunk->color_texels, 0, GL_READ_ONLY},
                        {t->splat_index, 0, GL_READ_ONLY},
-                       {t->normal, 0, GL_READ_ONLY},
+                       {t->surface.normal, 0, GL_READ_ONLY},
                        {into->picture, 0, into->only_unpainted ? GL_READ_WRITE : GL_WRITE_ONLY},
                        {into->seeds, 0, GL_READ_WRITE}},
             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         // One invocation handles 2x2 pixels.
-        orl_pixel_groups((t->width + 1) / 2, (t->height + 1) / 2, d.groups);
+        orl_pixel_groups((t->surface.width + 1) / 2, (t->surface.height + 1) / 2, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }
 }
 
 const struct orl_proxy_kind orl_proxy_splats = {
-    .name = "splats", .create = create, .vertices = vertices, .destroy = destroy, .resize = resize,
-    .free_target = free_target, .target_bytes = target_bytes, .bring = bring, .draw = draw,
-    .bring_colors = bring_colors, .color = color,
+    .name = "splats", .state_size = sizeof(struct cloud), .init = init, .vertices = vertices, .finish = finish,
+    .target_size = sizeof(struct splat_target), .make_target = make_target, .finish_target = finish_target,
+    .target_bytes = target_bytes, .bring = bring, .draw = draw, .bring_colors = bring_colors, .color = color,
 };

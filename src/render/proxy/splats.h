@@ -9,7 +9,8 @@ enum { PYRAMID_LEVELS_MAX = 16 }; // for pictures of up to 2^16 pixels in each d
 
 // The textures through which splats are drawn, for one picture size.
 struct splat_target {
-    int width, height, levels;
+    struct surface surface;
+    int levels;
     struct orl_tex *splat_depth;  // R32UI: bits of the nearest depth; all bits set: empty
     struct orl_tex *splat_index;  // R32UI: index of the nearest point; all bits set: empty
     struct orl_tex *splat_layer;  // R32UI: shaders/proxy/splat.glsl
@@ -19,7 +20,6 @@ struct splat_target {
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // levels from 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
     struct orl_tex *pushed_depth; // depth before isolated outliers are dropped
-    struct orl_tex *depth, *normal; // result, for struct surface
 };
 
 #endif
