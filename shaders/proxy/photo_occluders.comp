@@ -1,5 +1,5 @@
 // Writes the occluders of a photograph into its depth map, nearer than all else.
-#define BLOCK_OCCLUDERS
+#define BLOCK_DEPTH_MAP
 #include "shared/render_blocks.h"
 
 layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
@@ -9,8 +9,8 @@ layout(binding = 0) writeonly uniform image2D depth;
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (at.x >= map_size.x || at.y >= map_size.y)
+    if (at.x >= kept_size.x || at.y >= kept_size.y)
         return;
-    if (textureLod(mask, (vec2(at) + 0.5) / vec2(map_size), 0.0).r > 0.5)
+    if (textureLod(mask, (vec2(at) + 0.5) / vec2(kept_size), 0.0).r > 0.5)
         imageStore(depth, at, vec4(occluder_depth));
 }

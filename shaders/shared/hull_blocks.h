@@ -54,17 +54,4 @@ ORL_BLOCK(billboard_block)
 };
 #endif
 
-// Fattened outlines of a depth map.
-#if defined(__STDC_VERSION__) || defined(BLOCK_FATTEN)
-ORL_BLOCK(fatten_block)
-{
-    IVEC2(drawn_size);  // of the depth map that is read, pixels
-    IVEC2(kept_size);   // of the one that is written
-    FLOAT(line_offset); // factor on the depth of lines
-    FLOAT(unused0);
-    FLOAT(unused1);
-    FLOAT(unused2);
-};
-#endif
-
 #endif

@@ -124,22 +124,16 @@ ORL_BLOCK(gather_block)
 #define GUESS_LINES 32
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
-// Occluders in a photograph's depth map.
-#if defined(__STDC_VERSION__) || defined(BLOCK_OCCLUDERS)
-ORL_BLOCK(occluders_block)
+// A photograph's depth map: estimates in its holes, or fat outlines; and what stands before the scene.
+#if defined(__STDC_VERSION__) || defined(BLOCK_DEPTH_MAP)
+ORL_BLOCK(depth_map_block)
 {
-    IVEC2(map_size);       // of the depth map, pixels
-    FLOAT(occluder_depth); // what they get, scene units
-    FLOAT(unused);
-};
-#endif
-
-// Estimates in the holes of a photograph's depth map.
-#if defined(__STDC_VERSION__) || defined(BLOCK_HOLES)
-ORL_BLOCK(holes_block)
-{
-    IVEC2(drawn_size); // of the depth map that is read, pixels
-    IVEC2(kept_size);  // of the one that is written
+    IVEC2(drawn_size);     // of the depth map that is read, pixels
+    IVEC2(kept_size);      // of the one that is written
+    FLOAT(line_offset);    // factor on the depth of outlines
+    FLOAT(occluder_depth); // what occluders get, scene units
+    FLOAT(unused0);
+    FLOAT(unused1);
 };
 #endif
 

@@ -19,7 +19,7 @@ static void guess(float *depth)
     struct orl_tex *tex, *guessed;
     struct orl_tex_params params = {.width = WIDTH, .height = HEIGHT, .format = GL_R32F,
                                     .tag = "test depth"};
-    struct holes_block block = {.drawn_size = {WIDTH, HEIGHT}, .kept_size = {WIDTH, HEIGHT}};
+    struct depth_map_block block = {.drawn_size = {WIDTH, HEIGHT}, .kept_size = {WIDTH, HEIGHT}};
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &guessed), ORL_OK);
     orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, depth);

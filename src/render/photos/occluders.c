@@ -20,8 +20,8 @@ enum orl_result orl_occluders_read(const struct orl_log *log, const struct orl_s
 static void put(const struct frame *frame, size_t photo, const int kept[2], struct orl_tex *mask)
 {
     const struct photos *photos = frame->photos;
-    struct occluders_block block = {
-        .map_size = {kept[0], kept[1]},
+    struct depth_map_block block = {
+        .kept_size = {kept[0], kept[1]},
         .occluder_depth = OCCLUDER_DISTANCE * (float)photos->scene->photo_distance};
     struct orl_dispatch d = {
         .prog = orl_prog_get(frame->gpu, "proxy/photo_occluders.comp", NULL, NULL),

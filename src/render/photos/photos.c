@@ -13,7 +13,6 @@
 #include "render/photos/photos.h"
 #include "scene/manifest.h"
 #include "scene/silhouette.h"
-#include "shared/hull_blocks.h"
 #include "shared/render_blocks.h"
 
 enum {
@@ -446,13 +445,22 @@ struct orl_camera orl_photos_depth_camera(const struct photo_state *state, int d
                       : *c;
 }
 
-// Writes a depth map of kept[] pixels into a slot by a program of a parameter block.
-static void write_depth(const struct frame *frame, const struct surface *surface,
-                        const int kept[2], int slot, const char *file, const void *block,
-                        size_t size)
+static bool has_shadow_maps(const struct frame *frame)
 {
+    return orl_render_params_equal(frame->params, "visibility=opaque");
+}
+
+// Keeps kept[] pixels of the depth that a photograph sees in a slot, with estimated depth in the holes, or as a shadow
+// map with fat outlines.
+static void write_depth(const struct frame *frame, const struct surface *surface, const int kept[2], int slot)
+{
+    const char *file = has_shadow_maps(frame) ? "proxy/fatten.comp" : "proxy/photo_holes.comp";
+    struct depth_map_block block = {.drawn_size = {surface->width, surface->height},
+                                    .kept_size = {kept[0], kept[1]},
+                                    // Twice what the shadow test allows.
+                                    .line_offset = 1 + 2 * frame->params->depth_tolerance};
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, file, NULL, NULL),
-                             .params = block, .params_size = size,
+                             .params = &block, .params_size = sizeof block,
                              .images = {{surface->depth, 0, GL_READ_ONLY},
                                         {frame->photos->depth, 0, GL_WRITE_ONLY}},
                              .image_layers = {[1] = slot + 1},
@@ -460,31 +468,6 @@ static void write_depth(const struct frame *frame, const struct surface *surface
                                         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
     orl_pixel_groups(kept[0], kept[1], d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
-}
-
-// The depth that a photograph sees, with estimated depth in the holes.
-static void fill_holes(const struct frame *frame, const struct surface *surface,
-                       const int kept[2], int slot)
-{
-    struct holes_block block = {.drawn_size = {surface->width, surface->height},
-                                .kept_size = {kept[0], kept[1]}};
-    write_depth(frame, surface, kept, slot, "proxy/photo_holes.comp", &block, sizeof block);
-}
-
-// The same as a shadow map with fat outlines.
-static void fatten(const struct frame *frame, const struct surface *surface, const int kept[2],
-                   int slot)
-{
-    // Twice what the shadow test allows.
-    struct fatten_block block = {.drawn_size = {surface->width, surface->height},
-                                 .kept_size = {kept[0], kept[1]},
-                                 .line_offset = 1 + 2 * frame->params->depth_tolerance};
-    write_depth(frame, surface, kept, slot, "proxy/fatten.comp", &block, sizeof block);
-}
-
-static bool has_shadow_maps(const struct frame *frame)
-{
-    return orl_render_params_equal(frame->params, "visibility=opaque");
 }
 
 uint64_t orl_photos_depth_key(const struct frame *frame)
@@ -509,12 +492,9 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index, i
     if (!photos->depth)
         ORL_TRY(orl_tex_create(frame->gpu, &photos->depth_params, &photos->depth));
     ORL_TRY(orl_proxy_draw(frame->gpu, frame->proxy, &view, frame->params, false, target, &surface));
-    if (has_shadow_maps(frame)) {
-        fatten(frame, &surface, kept, state->slot);
-    } else {
-        fill_holes(frame, &surface, kept, state->slot);
+    write_depth(frame, &surface, kept, state->slot);
+    if (!has_shadow_maps(frame))
         ORL_TRY(orl_occluders_put(frame, index, kept));
-    }
     state->depth_key = frame->photos->depth_key;
     state->depth_divide = divide;
     return ORL_OK;
