@@ -32,7 +32,7 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return orl_tex_fit(gpu, &params, &fill->guesses);
 }
 
-// One program from texture to texture, each invocation for n x n pixels of `to`. beside: read besides; NULL: nothing is.
+// One program from texture to texture, each invocation for n x n pixels of `to`. beside: read besides, may be NULL.
 static void run(const struct frame *frame, const char *file, const char *defines, int n, const struct orl_tex *from,
                 const struct orl_tex *beside, const struct orl_tex *to)
 {

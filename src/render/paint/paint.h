@@ -57,7 +57,7 @@ enum { FILL_LEVELS_MAX = 17 };
 
 struct fill {
     struct image_block block; // parameters of the passes
-    int levels;               // of the picture
+    int levels;               // of the picture; further ones are left from a larger one
     // The pyramid: value * weight, weight. Level 0 has half the picture's size.
     struct orl_tex *level[FILL_LEVELS_MAX];
     struct orl_tex *guesses; // mipmapped sums over 2x2 pixels of (colour, 1) on estimated depth
