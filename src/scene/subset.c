@@ -7,84 +7,128 @@
 #include "core/json.h"
 #include "core/memory.h"
 #include "scene/colmap.h"
+#include "scene/manifest.h"
 
-// Copies a file of the scene to the same place in `dir`, if the file exists. `path` begins with the
-// scene's folder.
-static enum orl_result copy_if_there(const struct orl_log *log, const struct orl_scene *scene,
-                                     const char *path, const char *dir)
+// --- files ---
+
+enum orl_result orl_subset_add_checksum(const struct orl_subset *subset, const char *name)
 {
-    const char *inside = path + strlen(scene->dir);
-    return orl_path_is_file(path) ? orl_file_copy(log, path, ORL_PATH(dir, "%s", inside + strspn(inside, "/")))
-                                  : ORL_OK;
+    char sum[ORL_CHECKSUM_SIZE];
+    const char *path = ORL_PATH(subset->dir, "%s", name);
+    ORL_TRY(orl_file_checksum(subset->log, path, sum));
+    if (json_object_set_new(json_object_get(subset->manifest, "checksums"), name, json_string(sum)) != 0)
+        return orl_fail(subset->log, ORL_ERR_MEMORY, "%s: no memory for its checksum", path);
+    return ORL_OK;
 }
 
-enum orl_result orl_subset_copy_masks(const struct orl_log *log, const struct orl_scene *scene,
-                                      size_t photo, const char *dir)
+// Copies a file of the scene to the same place in the new folder, if the file exists and was not written there yet.
+// `path` begins with the scene's folder.
+static enum orl_result copy_if_there(const struct orl_subset *subset, const char *path)
 {
-    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_MASK).text, dir));
-    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_BACKGROUND).text, dir));
-    return copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_OCCLUDERS).text, dir);
+    const char *name = path + strlen(subset->scene->dir);
+    name += strspn(name, "/");
+    if (!orl_path_is_file(path) || json_object_get(json_object_get(subset->manifest, "checksums"), name))
+        return ORL_OK;
+    ORL_TRY(orl_file_copy(subset->log, path, ORL_PATH(subset->dir, "%s", name)));
+    return orl_subset_add_checksum(subset, name);
 }
 
-enum orl_result orl_subset_copy_photo(const struct orl_log *log, const struct orl_scene *scene,
-                                      size_t photo, const char *dir)
+enum orl_result orl_subset_copy_photo(const struct orl_subset *subset, size_t photo)
 {
-    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_PHOTO).text, dir));
-    ORL_TRY(copy_if_there(log, scene, orl_scene_file(scene, photo, ORL_FILE_LINEAR).text, dir));
-    return orl_subset_copy_masks(log, scene, photo, dir);
+    struct orl_scene at = *subset->scene;
+    for (at.frame = -1; at.frame < (int)at.frame_count; at.frame++)
+        for (enum orl_photo_file kind = ORL_FILE_PHOTO; kind <= ORL_FILE_LINEAR; kind++)
+            ORL_TRY(copy_if_there(subset, orl_scene_file(&at, photo, kind).text));
+    return ORL_OK;
+}
+
+static enum orl_result copy_meshes(const struct orl_subset *subset)
+{
+    struct orl_scene at = *subset->scene;
+    for (at.frame = -1; at.frame < (int)at.frame_count; at.frame++)
+        ORL_TRY(copy_if_there(subset, orl_scene_mesh_path(&at).text));
+    return ORL_OK;
+}
+
+static enum orl_result write_points(const struct orl_subset *subset)
+{
+    if (!subset->points)
+        return copy_if_there(subset, ORL_PATH(subset->scene->dir, "points.ply"));
+    ORL_TRY(orl_points_write(subset->log, ORL_PATH(subset->dir, "points.ply"), subset->points, true, NULL));
+    return orl_subset_add_checksum(subset, "points.ply");
 }
 
 // --- the sparse model ---
 
 // Writes the images of `all` that stay. They are listed in an array of their own, since `all` owns
 // the names of every image.
-static enum orl_result write_kept(const struct orl_log *log, const struct orl_colmap_model *all,
-                                  const bool *keep, const char *sparse)
+static enum orl_result write_kept(const struct orl_subset *subset, const struct orl_colmap_model *all,
+                                  const char *sparse)
 {
     struct orl_colmap_model kept = *all;
     kept.image_count = 0;
-    kept.images = orl_array(log, all->image_count, sizeof *kept.images);
+    kept.images = orl_array(subset->log, all->image_count, sizeof *kept.images);
     ORL_TRY_MEMORY(kept.images);
     for (size_t i = 0; i < all->image_count; i++)
-        if (keep[i])
+        if (subset->keep[i])
             kept.images[kept.image_count++] = all->images[i];
-    enum orl_result result = orl_colmap_write(log, sparse, &kept);
+    enum orl_result result = orl_colmap_write(subset->log, sparse, &kept);
     free(kept.images);
     return result;
 }
 
-enum orl_result orl_subset_write_model(const struct orl_log *log, const struct orl_scene *scene,
-                                       const bool *keep, const char *dir)
+static enum orl_result write_model(const struct orl_subset *subset)
 {
+    static const char *const files[] = {"sparse/cameras.bin", "sparse/images.bin", "sparse/points3D.bin"};
     struct orl_colmap_model all = {0};
-    const char *sparse = ORL_PATH(dir, "sparse");
-    enum orl_result result = orl_dir_make(log, sparse);
-    ORL_THEN(result, orl_scene_read_model(log, scene, &all));
+    const char *sparse = ORL_PATH(subset->dir, "sparse");
+    enum orl_result result = orl_dir_make(subset->log, sparse);
+    ORL_THEN(result, orl_scene_read_model(subset->log, subset->scene, &all));
     // Photographs and the images of the model have equal indices.
-    if (result == ORL_OK && all.image_count != scene->photo_count)
-        result = orl_fail(log, ORL_ERR_DATA, "%s: its sparse model has changed", scene->dir);
-    ORL_THEN(result, write_kept(log, &all, keep, sparse));
+    if (result == ORL_OK && all.image_count != subset->scene->photo_count)
+        result = orl_fail(subset->log, ORL_ERR_DATA, "%s: its sparse model has changed", subset->scene->dir);
+    ORL_THEN(result, write_kept(subset, &all, sparse));
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
+        result = orl_subset_add_checksum(subset, files[i]);
     orl_colmap_finish(&all);
     return result;
 }
 
 // --- the manifest ---
 
-void orl_subset_keep_photographs(const struct orl_scene *scene, const bool *keep, json_t *root)
+static enum orl_result read_manifest(const struct orl_subset *subset, json_t **root)
 {
-    json_t *list = json_object_get(root, "photographs"), *counts = json_object_get(root, "counts");
+    const struct orl_scene *scene = subset->scene;
+    const char *path = ORL_PATH(scene->dir, "scene.json");
+    if (orl_path_is_file(path))
+        return orl_json_read(subset->log, path, root);
+    json_t *photos = json_array();
+    for (size_t i = 0; i < scene->photo_count; i++)
+        json_array_append_new(photos, json_pack("{s:s, s:s}", "name", scene->photos[i].name,
+                                                "split", "train"));
+    *root = json_pack("{s:s, s:i, s:s, s:o}", "format", "oriel scene", "version",
+                      ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "photographs",
+                      photos);
+    return *root ? ORL_OK : orl_fail(subset->log, ORL_ERR_MEMORY, "no memory for the manifest");
+}
+
+// Removes all other photographs from the manifest, and sets the counts of photographs.
+static void keep_photographs(const struct orl_subset *subset)
+{
+    json_t *list = json_object_get(subset->manifest, "photographs");
+    json_t *counts = json_object_get(subset->manifest, "counts");
     json_int_t test = 0;
     for (size_t i = json_array_size(list); i-- > 0;) {
         const char *name = orl_json_text(json_array_get(list, i), "name");
-        int photo = name ? orl_scene_find_photo(scene, name) : -1;
-        if (photo >= 0 && keep[photo])
-            test += scene->photos[photo].test;
+        int photo = name ? orl_scene_find_photo(subset->scene, name) : -1;
+        if (photo >= 0 && subset->keep[photo])
+            test += subset->scene->photos[photo].test;
         else
             json_array_remove(list, i);
     }
     if (!json_is_object(counts)) {
         counts = json_object();
-        json_object_set_new(root, "counts", counts);
+        json_object_set_new(subset->manifest, "counts", counts);
     }
     json_int_t count = (json_int_t)json_array_size(list);
     json_object_set_new(counts, "registered", json_integer(count));
@@ -92,50 +136,12 @@ void orl_subset_keep_photographs(const struct orl_scene *scene, const bool *keep
     json_object_set_new(counts, "train", json_integer(count - test));
 }
 
-enum orl_result orl_subset_add_checksum(const struct orl_log *log, const char *dir,
-                                        const char *name, json_t *sums)
+enum orl_result orl_subset_begin(struct orl_subset *subset)
 {
-    char sum[ORL_CHECKSUM_SIZE];
-    const char *path = ORL_PATH(dir, "%s", name);
-    ORL_TRY(orl_file_checksum(log, path, sum));
-    if (json_object_set_new(sums, name, json_string(sum)) != 0)
-        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its checksum", path);
-    return ORL_OK;
-}
-
-enum orl_result orl_subset_add_checksums(const struct orl_log *log, const char *dir, json_t *sums)
-{
-    static const char *const files[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
-                                        "sparse/points3D.bin"};
-    for (size_t i = 0; i < ORL_COUNT(files); i++)
-        ORL_TRY(orl_subset_add_checksum(log, dir, files[i], sums));
-    return ORL_OK;
-}
-
-enum orl_result orl_subset_begin(const struct orl_log *log, const struct orl_scene *scene,
-                                 const bool *keep, const char *dir, json_t **manifest)
-{
-    const char *path = ORL_PATH(scene->dir, "scene.json");
-    *manifest = NULL;
-    if (scene->frame_count)
-        return orl_fail(log, ORL_ERR_DATA, "%s: is a sequence", scene->dir);
-    if (!orl_path_is_file(path))
-        return orl_fail(log, ORL_ERR_DATA, "%s: a plain workspace; prepare or import it first",
-                        scene->dir);
-    enum orl_result result = orl_json_read(log, path, manifest);
-    ORL_THEN(result, copy_if_there(log, scene, ORL_PATH(scene->dir, "points.ply"), dir));
-    ORL_THEN(result, copy_if_there(log, scene, orl_scene_mesh_path(scene).text, dir));
-    ORL_THEN(result, orl_subset_write_model(log, scene, keep, dir));
-    if (result == ORL_OK) {
-        orl_subset_keep_photographs(scene, keep, *manifest);
-        json_object_del(*manifest, "tuned"); // other photographs want other settings
-        json_t *sums = json_object();
-        json_object_set_new(*manifest, "checksums", sums);
-        result = orl_subset_add_checksums(log, dir, sums);
-    }
-    if (result != ORL_OK) {
-        json_decref(*manifest);
-        *manifest = NULL;
-    }
-    return result;
+    ORL_TRY(read_manifest(subset, &subset->manifest));
+    keep_photographs(subset);
+    json_object_set_new(subset->manifest, "checksums", json_object());
+    ORL_TRY(write_points(subset));
+    ORL_TRY(copy_meshes(subset));
+    return write_model(subset);
 }
