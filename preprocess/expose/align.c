@@ -7,7 +7,7 @@
 #include "core/cholesky.h"
 #include "core/color.h"
 #include "core/memory.h"
-#include "core/order.h"
+#include "preprocess/expose/robust_fit.h"
 
 enum {
     ITERATIONS = 6,
@@ -29,178 +29,85 @@ static const double EXPOSURE_SIGMA_EV = 0.3, UNKNOWN_SIGMA_EV = 1;
 // Greatest plausible difference from the known exposure, and of a channel's gain from the mean.
 static const double LIMIT_EV = 2, COLOUR_LIMIT_EV = 1;
 
-// --- the problem: log colour + log gain - log vignetting is equal for all observations of a point
-// ---
+// --- the problem: log colour + log gain - log vignetting is equal for all observations of a point ---
 
 struct problem {
     const struct orl_log *log;
     const struct orl_samples *samples;
     struct orl_align_photo *photos;
     size_t photo_count, lens_count;
+    struct orl_robust_fit fit; // unknowns: log gain of each photograph, LENS_TERMS of each lens
+    int channel;
+    bool with_lens;
     float (*value)[4];  // log of linear colour: r g b and their mean; per observation
-    float *sigma;       // of the value; INFINITY: takes no part
-    float *weight;      // robust
     float *lens_log;    // log of the vignetting found so far
-    float *scratch, *residual; // per observation
-    double *matrix, *x, *prior, *precision;
+    double *prior, *precision;
     size_t *lens_photos;        // photographs of each lens
     double (*lens)[LENS_TERMS]; // log vignetting = sum of lens[k] r^(2 k + 2)
 };
 
-// The coefficients of the unknowns in one observation's equation.
-struct row {
-    size_t index[1 + LENS_TERMS];
-    double factor[1 + LENS_TERMS];
-    int count;
-};
-
-static struct row row_of(const struct problem *p, size_t i, bool with_lens)
+static void set_equation(const void *problem, size_t i, struct orl_equation *equation)
 {
+    const struct problem *p = problem;
     const struct orl_observation *item = &p->samples->items[i];
-    struct row row = {.index = {item->photo}, .factor = {1}, .count = 1};
+    size_t lens = p->photo_count + LENS_TERMS * (size_t)p->photos[item->photo].lens;
     double power = 1;
-    for (int k = 0; with_lens && k < LENS_TERMS; k++) {
+    equation->value = (double)(p->value[i][p->channel] - p->lens_log[i]);
+    orl_equation_add(equation, item->photo, 1);
+    for (size_t k = 0; p->with_lens && k < LENS_TERMS; k++) {
         power *= (double)item->r2;
-        row.index[row.count] =
-            p->photo_count + LENS_TERMS * (size_t)p->photos[item->photo].lens + (size_t)k;
-        row.factor[row.count++] = -power;
-    }
-    return row;
-}
-
-static double row_times(const struct row *row, const double *x)
-{
-    double sum = 0;
-    for (int k = 0; k < row->count; k++)
-        sum += row->factor[k] * x[row->index[k]];
-    return sum;
-}
-
-static double weight_of(const struct problem *p, size_t i)
-{
-    return (double)p->weight[i] / ((double)p->sigma[i] * (double)p->sigma[i]);
-}
-
-// a += factor * left * right^T
-static void add_product(double *a, size_t n, const struct row *left, const struct row *right,
-                        double factor)
-{
-    for (int k = 0; k < left->count; k++)
-        for (int m = 0; m < right->count; m++)
-            a[left->index[k] * n + right->index[m]] +=
-                factor * left->factor[k] * right->factor[m];
-}
-
-// Adds a point's equations. Eliminating the point's own colour leaves differences from the weighted
-// mean of its observations.
-static void add_point(const struct problem *p, size_t point, int channel, bool with_lens,
-                      double scale, double *a, double *b, size_t n)
-{
-    size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
-    double total = 0, mean = 0;
-    for (size_t i = begin; i < end; i++) {
-        total += weight_of(p, i);
-        mean += weight_of(p, i) * (double)(p->value[i][channel] - p->lens_log[i]);
-    }
-    if (!(total > 0))
-        return;
-    mean /= total;
-    for (size_t i = begin; i < end; i++) {
-        double w = weight_of(p, i);
-        if (!(w > 0))
-            continue;
-        struct row row = row_of(p, i, with_lens);
-        double off = (double)(p->value[i][channel] - p->lens_log[i]) - mean;
-        for (int k = 0; k < row.count; k++)
-            b[row.index[k]] -= scale * w * row.factor[k] * off;
-        add_product(a, n, &row, &row, scale * w);
-        for (size_t j = begin; j < end; j++) {
-            double both = scale * w * weight_of(p, j) / total;
-            if (!with_lens)
-                a[p->samples->items[i].photo * n + p->samples->items[j].photo] -= both;
-            else if (both > 0) {
-                struct row other = row_of(p, j, true);
-                add_product(a, n, &row, &other, -both);
-            }
-        }
+        orl_equation_add(equation, lens + k, -power);
     }
 }
 
-// Writes, for every observation that takes part, the residual from its point's mean.
-static void residuals(struct problem *p, int channel, bool with_lens)
+// Writes, for every observation, the residual from its point's mean.
+static void residuals(struct problem *p)
 {
-    float *out = p->residual;
-    for (size_t point = 0; point < p->samples->point_count; point++) {
-        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
-        double total = 0, mean = 0;
-        for (size_t i = begin; i < end; i++) {
-            struct row row = row_of(p, i, with_lens);
-            out[i] = p->value[i][channel] - p->lens_log[i] + (float)row_times(&row, p->x);
-            total += weight_of(p, i);
-            mean += weight_of(p, i) * (double)out[i];
-        }
-        for (size_t i = begin; i < end; i++)
-            out[i] = total > 0 ? out[i] - (float)(mean / total) : 0;
-    }
-}
-
-// Robust standard deviation of the residuals, absolute or relative to their sigmas.
-static double spread(struct problem *p, bool relative)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < p->samples->count; i++)
-        if (isfinite(p->sigma[i]))
-            p->scratch[count++] = fabsf(p->residual[i]) / (relative ? p->sigma[i] : 1);
-    qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
-    return count ? 1.4826 * (double)p->scratch[count / 2] : 0;
-}
-
-// Applies Huber's weights or Tukey's, which give outliers weight 0.
-static void reweigh(struct problem *p, bool tukey)
-{
-    double scale = fmax(spread(p, true), 0.1);
     for (size_t i = 0; i < p->samples->count; i++) {
-        double t = fabs((double)p->residual[i]) / ((double)p->sigma[i] * scale);
-        double huber = t <= 1.345 ? 1 : 1.345 / t, u = t / 4.685;
-        p->weight[i] = !isfinite(p->sigma[i]) ? 0
-                       : !tukey ? (float)huber
-                                : u < 1 ? (float)((1 - u * u) * (1 - u * u)) : 0;
+        struct orl_equation equation;
+        double sum = 0;
+        equation.count = 0;
+        set_equation(p, i, &equation);
+        for (int k = 0; k < equation.count; k++)
+            sum += equation.factor[k] * p->fit.x[equation.index[k]];
+        p->fit.residual[i] = (float)equation.value + (float)sum;
     }
+    orl_robust_center(&p->fit);
 }
 
-static bool step(struct problem *p, int channel, bool with_lens, double scale)
+// scale: of the samples' weight, against what is known without them.
+static bool step(struct problem *p, double scale)
 {
-    size_t n = p->photo_count + (with_lens ? LENS_TERMS * p->lens_count : 0);
-    memset(p->matrix, 0, n * n * sizeof *p->matrix);
-    memset(p->x, 0, n * sizeof *p->x);
-    for (size_t point = 0; point < p->samples->point_count; point++)
-        add_point(p, point, channel, with_lens, scale, p->matrix, p->x, n);
+    size_t n = p->photo_count + (p->with_lens ? LENS_TERMS * p->lens_count : 0);
+    double *x = p->fit.x;
+    orl_robust_equations(&p->fit, n, p, set_equation);
     for (size_t i = 0; i < n; i++) {
         bool photo = i < p->photo_count;
         size_t lens = photo ? 0 : (i - p->photo_count) / LENS_TERMS;
         double precision = photo ? p->precision[i]
                            : p->lens_photos[lens] < LENS_PHOTOS_MIN ? 1e12 : 1;
-        p->matrix[i * n + i] += precision;
-        p->x[i] += photo ? precision * p->prior[i] : 0;
+        p->fit.matrix[i * n + i] += precision / scale;
+        x[i] += photo ? precision / scale * p->prior[i] : 0;
     }
-    return orl_cholesky_solve(p->matrix, p->x, n);
+    return orl_cholesky_solve(p->fit.matrix, x, n);
 }
 
-// Solves by iteratively reweighted least squares. The unknowns are left in p->x.
+// Solves by iteratively reweighted least squares. The unknowns are left in p->fit.x.
 static enum orl_result fit(struct problem *p, int channel, bool with_lens)
 {
     double information = 0;
-    for (size_t i = 0; i < p->samples->count; i++) {
-        p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
-        information += weight_of(p, i);
-    }
+    p->channel = channel;
+    p->with_lens = with_lens;
+    orl_robust_reset(&p->fit);
+    for (size_t i = 0; i < p->samples->count; i++)
+        information += orl_robust_weight(&p->fit, i);
     double limit = (double)p->photo_count / (GAIN_SIGMA * GAIN_SIGMA);
     double scale = information > limit ? limit / information : 1;
     for (int i = 0; i < ITERATIONS; i++) {
-        if (!step(p, channel, with_lens, scale))
+        if (!step(p, scale))
             return orl_fail(p->log, ORL_ERR_DATA, "photographs cannot be aligned: no solution");
-        residuals(p, channel, with_lens);
-        reweigh(p, i + 1 >= ITERATIONS - TUKEY_ITERATIONS);
+        residuals(p);
+        orl_robust_reweigh(&p->fit, i + 1 >= ITERATIONS - TUKEY_ITERATIONS, 0.1);
     }
     return ORL_OK;
 }
@@ -248,7 +155,7 @@ static double farthest(const struct problem *p, size_t lens)
 {
     float r2 = 0;
     for (size_t i = 0; i < p->samples->count; i++)
-        if ((size_t)p->photos[p->samples->items[i].photo].lens == lens && isfinite(p->sigma[i]))
+        if ((size_t)p->photos[p->samples->items[i].photo].lens == lens && isfinite(p->fit.sigma[i]))
             r2 = fmaxf(r2, p->samples->items[i].r2);
     return (double)r2;
 }
@@ -256,13 +163,13 @@ static double farthest(const struct problem *p, size_t lens)
 static enum orl_result fit_lenses(struct problem *p, struct orl_alignment *alignment)
 {
     enum orl_result result = fit(p, 3, false);
-    double before = spread(p, false);
+    double before = orl_robust_spread(&p->fit, false);
     ORL_THEN(result, fit(p, 3, true));
     // Vignetting that explains less than a hundredth of the spread is rejected as noise.
-    if (result != ORL_OK || spread(p, false) > 0.99 * before)
+    if (result != ORL_OK || orl_robust_spread(&p->fit, false) > 0.99 * before)
         return result;
     for (size_t k = 0; k < p->lens_count; k++) {
-        const double *terms = p->x + p->photo_count + LENS_TERMS * k;
+        const double *terms = p->fit.x + p->photo_count + LENS_TERMS * k;
         double r2_max = farthest(p, k);
         if (!(r2_max > 0.3) || !is_lens(terms, r2_max))
             continue;
@@ -297,7 +204,7 @@ static void set_values(struct problem *p)
         const struct orl_align_photo *photo = &p->photos[item->photo];
         double noise = item->clipped ? INFINITY : 0;
         p->value[i][3] = 0;
-        p->sigma[i] = INFINITY;
+        p->fit.sigma[i] = INFINITY;
         for (int c = 0; c < 3 && !item->clipped; c++) {
             const float *curve = photo->linear ? photo->linear[c] : NULL;
             double light = decode(curve, item->value[c]);
@@ -312,7 +219,7 @@ static void set_values(struct problem *p)
             p->value[i][3] += p->value[i][c] / 3;
         }
         if (!photo->refused && isfinite(noise))
-            p->sigma[i] = (float)sqrt(SAMPLE_SIGMA * SAMPLE_SIGMA + noise * noise);
+            p->fit.sigma[i] = (float)sqrt(SAMPLE_SIGMA * SAMPLE_SIGMA + noise * noise);
     }
 }
 
@@ -347,12 +254,12 @@ static void set_gains(struct problem *p, int channel)
         any = any || p->photos[i].known;
     for (size_t i = 0; i < p->photo_count; i++)
         if ((p->photos[i].known || !any) && !p->photos[i].refused) {
-            shift -= p->x[i] + (any ? LN2 * p->photos[i].ev : 0);
+            shift -= p->fit.x[i] + (any ? LN2 * p->photos[i].ev : 0);
             count++;
         }
     shift = count > 0 ? shift / count : 0;
     for (size_t i = 0; i < p->photo_count; i++)
-        p->photos[i].gain[channel] = (float)exp(p->x[i] + shift);
+        p->photos[i].gain[channel] = (float)exp(p->fit.x[i] + shift);
 }
 
 static void count_samples(struct problem *p)
@@ -360,7 +267,7 @@ static void count_samples(struct problem *p)
     for (size_t i = 0; i < p->photo_count; i++)
         p->photos[i].samples = 0;
     for (size_t i = 0; i < p->samples->count; i++)
-        p->photos[p->samples->items[i].photo].samples += isfinite(p->sigma[i]);
+        p->photos[p->samples->items[i].photo].samples += isfinite(p->fit.sigma[i]);
 }
 
 static double mean_gain_ev(const struct orl_align_photo *photo)
@@ -416,10 +323,10 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
         set_values(p);
         count_samples(p);
         if (round == 0) {
-            for (size_t i = 0; i < p->samples->count; i++)
-                p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
-            residuals(p, 3, false);
-            alignment->spread_before_ev = spread(p, false) / LN2;
+            p->channel = 3;
+            orl_robust_reset(&p->fit);
+            residuals(p);
+            alignment->spread_before_ev = orl_robust_spread(&p->fit, false) / LN2;
             result = fit_lenses(p, alignment);
         }
         for (int c = 0; result == ORL_OK && c < 4; c++) {
@@ -430,7 +337,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
         again = result == ORL_OK && refuse(p);
     }
     if (result == ORL_OK) {
-        alignment->spread_after_ev = spread(p, false) / LN2;
+        alignment->spread_after_ev = orl_robust_spread(&p->fit, false) / LN2;
         fall_back(p);
     }
     return result;
@@ -452,23 +359,19 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
     struct problem p = {.log = log, .samples = samples, .photos = photos, .photo_count = photo_count,
                         .lens_count = lens_count(photos, photo_count)};
     size_t unknowns = photo_count + LENS_TERMS * p.lens_count, count = samples->count;
-    float *floats = orl_array(log, count, 9 * sizeof *floats);
-    double *doubles = orl_array(log, unknowns, (unknowns + 3) * sizeof *doubles);
+    float *floats = orl_array(log, count, 5 * sizeof *floats);
+    double *doubles = orl_array(log, unknowns, 2 * sizeof *doubles);
+    enum orl_result result = orl_robust_init(log, samples, unknowns, &p.fit);
     p.lens_photos = orl_array(log, p.lens_count, sizeof *p.lens_photos);
     alignment->vignette = orl_array(log, p.lens_count, sizeof *alignment->vignette);
     alignment->lens_count = p.lens_count;
-    enum orl_result result = ORL_ERR_MEMORY;
-    if (floats && doubles && p.lens_photos && alignment->vignette) {
+    if (!floats || !doubles || !p.lens_photos || !alignment->vignette)
+        result = ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
         p.value = (float (*)[4])floats;
-        p.sigma = floats + 4 * count;
-        p.weight = floats + 5 * count;
-        p.lens_log = floats + 6 * count;
-        p.scratch = floats + 7 * count;
-        p.residual = floats + 8 * count;
-        p.matrix = doubles;
-        p.x = doubles + unknowns * unknowns;
-        p.prior = p.x + unknowns;
-        p.precision = p.prior + photo_count;
+        p.lens_log = floats + 4 * count;
+        p.prior = doubles;
+        p.precision = doubles + photo_count;
         p.lens = (double (*)[LENS_TERMS])(p.precision + photo_count);
         for (size_t i = 0; i < photo_count; i++) {
             photos[i].refused = false;
@@ -477,6 +380,7 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
         }
         result = solve_all(&p, alignment);
     }
+    orl_robust_finish(&p.fit);
     free(floats);
     free(doubles);
     free(p.lens_photos);

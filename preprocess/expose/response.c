@@ -7,7 +7,7 @@
 #include "core/cholesky.h"
 #include "core/color.h"
 #include "core/memory.h"
-#include "core/order.h"
+#include "preprocess/expose/robust_fit.h"
 
 enum {
     NODES = 256,       // 8-bit values; 0 is not used, since its logarithm is unbounded
@@ -42,14 +42,13 @@ static const double RISE_MIN = 1e-4;
 struct problem {
     const struct orl_samples *samples;
     const struct orl_response_photo *photos;
-    float *sigma;    // per observation; INFINITY: takes no part
-    float *weight, *residual, *scratch;
+    struct orl_robust_fit fit; // unknowns: the terms, then an offset of each photograph's log exposure
     float *light;    // log of vignetting times exposure
     double floor;    // 8-bit value; darker values have no weight
     double srgb[NODES], off[NODES]; // log exposure of sRGB; the curve's difference from it
     int channel;
     size_t photo_count;
-    double *matrix, *unknown, *offset; // offset: of each photograph's log exposure
+    double *offset;  // of each photograph's log exposure
     double *share;   // of each photograph in the weight of all samples, times photo_count
 };
 
@@ -74,12 +73,6 @@ static double curve_at(const struct problem *p, double value)
     size_t n = node_of(value, &u);
     return log((double)orl_srgb_decode((float)value / 255)) + (1 - u) * p->off[n] +
            u * p->off[n + 1];
-}
-
-static double weight_of(const struct problem *p, size_t i)
-{
-    return isfinite(p->sigma[i])
-               ? (double)p->weight[i] / ((double)p->sigma[i] * (double)p->sigma[i]) : 0;
 }
 
 static bool is_usable(const struct problem *p, const struct orl_observation *item)
@@ -168,14 +161,14 @@ static size_t choose(struct problem *p)
             const struct orl_observation *item = &p->samples->items[i];
             const struct orl_response_photo *photo = &p->photos[item->photo];
             double value = (double)item->value[p->channel] - p->floor, slope;
-            p->sigma[i] = INFINITY;
+            p->fit.sigma[i] = INFINITY;
             p->light[i] = (float)(LN2 * photo->ev +
                                   log(vignetting(photo->vignette, (double)item->r2)));
             if (!counts || !is_usable(p, item) || value < 2)
                 continue;
             slope = log((double)orl_srgb_decode((float)(value + 1) / 255) /
                         (double)orl_srgb_decode((float)(value - 1) / 255)) / 2;
-            p->sigma[i] = (float)sqrt(SAMPLE_SIGMA * SAMPLE_SIGMA + slope * slope);
+            p->fit.sigma[i] = (float)sqrt(SAMPLE_SIGMA * SAMPLE_SIGMA + slope * slope);
         }
     }
     return points;
@@ -186,7 +179,7 @@ static bool spans(const struct problem *p)
     size_t bins[BINS] = {0};
     int full = 0;
     for (size_t i = 0; i < p->samples->count; i++)
-        if (isfinite(p->sigma[i]))
+        if (isfinite(p->fit.sigma[i]))
             bins[(int)(p->samples->items[i].value[p->channel] * BINS / 256)]++;
     for (int b = 0; b < BINS; b++)
         full += bins[b] >= PER_BIN_MIN;
@@ -195,51 +188,13 @@ static bool spans(const struct problem *p)
 
 static void set_residuals(struct problem *p)
 {
-    for (size_t point = 0; point < p->samples->point_count; point++) {
-        size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
-        double total = 0, mean = 0;
-        for (size_t i = begin; i < end; i++) {
-            if (!isfinite(p->sigma[i]))
-                continue;
+    for (size_t i = 0; i < p->samples->count; i++)
+        if (isfinite(p->fit.sigma[i])) {
             double value = (double)p->samples->items[i].value[p->channel];
-            p->residual[i] = (float)(curve_at(p, value) - (double)p->light[i] -
-                                     p->offset[p->samples->items[i].photo]);
-            total += weight_of(p, i);
-            mean += weight_of(p, i) * (double)p->residual[i];
+            p->fit.residual[i] = (float)(curve_at(p, value) - (double)p->light[i] -
+                                         p->offset[p->samples->items[i].photo]);
         }
-        for (size_t i = begin; i < end; i++)
-            p->residual[i] = total > 0 && isfinite(p->sigma[i])
-                                 ? p->residual[i] - (float)(mean / total) : 0;
-    }
-}
-
-// Robust standard deviation of the residuals, absolute or relative to their sigmas.
-static double spread(struct problem *p, bool relative)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < p->samples->count; i++)
-        if (isfinite(p->sigma[i]))
-            p->scratch[count++] = fabsf(p->residual[i]) / (relative ? p->sigma[i] : 1);
-    qsort(p->scratch, count, sizeof *p->scratch, orl_order_floats);
-    return count ? 1.4826 * (double)p->scratch[count / 2] : 0;
-}
-
-static void reset_weights(struct problem *p)
-{
-    for (size_t i = 0; i < p->samples->count; i++)
-        p->weight[i] = isfinite(p->sigma[i]) ? 1 : 0;
-}
-
-static void reweigh(struct problem *p, bool tukey)
-{
-    double scale = fmax(spread(p, true), 0.05);
-    for (size_t i = 0; i < p->samples->count; i++) {
-        double t = fabs((double)p->residual[i]) / ((double)p->sigma[i] * scale), u = t / 4.685;
-        double huber = t <= 1.345 ? 1 : 1.345 / t;
-        p->weight[i] = !isfinite(p->sigma[i]) ? 0
-                       : !tukey ? (float)huber
-                                : u < 1 ? (float)((1 - u * u) * (1 - u * u)) : 0;
-    }
+    orl_robust_center(&p->fit);
 }
 
 // Chebyshev polynomials of degree 1 to TERMS, with 0 to 255 mapped to their range.
@@ -254,48 +209,16 @@ static void terms_at(double value, double t[TERMS])
     }
 }
 
-// Log exposure of observation i by sRGB less its known exposure; `t`: the polynomial's terms there.
-static double row_of(const struct problem *p, size_t i, double t[TERMS])
+static void set_equation(const void *problem, size_t i, struct orl_equation *equation)
 {
-    double value = (double)p->samples->items[i].value[p->channel];
+    const struct problem *p = problem;
+    const struct orl_observation *item = &p->samples->items[i];
+    double value = (double)item->value[p->channel], t[TERMS];
     terms_at(value, t);
-    return log((double)orl_srgb_decode((float)value / 255)) - (double)p->light[i];
-}
-
-// Adds a point's equations. Eliminating the point's radiance leaves differences from its mean.
-// Unknowns: the terms, then an offset of each photograph's log exposure.
-static void add_point(const struct problem *p, size_t point, double *a, double *b)
-{
-    size_t begin = p->samples->first[point], end = p->samples->first[point + 1];
-    size_t n = TERMS + p->photo_count;
-    double total = 0, mean = 0, middle[TERMS] = {0}, t[TERMS];
-    for (size_t i = begin; i < end; i++) {
-        double w = weight_of(p, i);
-        if (!(w > 0))
-            continue;
-        mean += w * row_of(p, i, t);
-        total += w;
-        for (int k = 0; k < TERMS; k++)
-            middle[k] += w * t[k];
-    }
-    for (size_t i = begin; total > 0 && i < end; i++) {
-        double w = weight_of(p, i);
-        if (!(w > 0))
-            continue;
-        double y = row_of(p, i, t) - mean / total;
-        double *own = a + (TERMS + p->samples->items[i].photo) * n;
-        b[TERMS + p->samples->items[i].photo] += w * y;
-        own[TERMS + p->samples->items[i].photo] += w;
-        for (size_t j = begin; j < end; j++)
-            own[TERMS + p->samples->items[j].photo] -= w * weight_of(p, j) / total;
-        for (size_t k = 0; k < TERMS; k++) {
-            double off = t[k] - middle[k] / total;
-            b[k] -= w * off * y;
-            own[k] -= w * off;
-            for (size_t m = 0; m < TERMS; m++)
-                a[k * n + m] += w * off * (t[m] - middle[m] / total);
-        }
-    }
+    equation->value = log((double)orl_srgb_decode((float)value / 255)) - (double)p->light[i];
+    for (size_t k = 0; k < TERMS; k++)
+        orl_equation_add(equation, k, t[k]);
+    orl_equation_add(equation, TERMS + item->photo, -1);
 }
 
 // Adds the integral of the squared second derivative over [0, 1].
@@ -354,16 +277,18 @@ static void add_offsets(const struct problem *p, bool stretches, double *a, size
     }
 }
 
-static void set_shares(struct problem *p)
+// Returns the weight of all samples.
+static double set_shares(struct problem *p)
 {
     double *share = p->share, total = 0;
     memset(share, 0, p->photo_count * sizeof *share);
     for (size_t i = 0; i < p->samples->count; i++) {
-        share[p->samples->items[i].photo] += weight_of(p, i);
-        total += weight_of(p, i);
+        share[p->samples->items[i].photo] += orl_robust_weight(&p->fit, i);
+        total += orl_robust_weight(&p->fit, i);
     }
     for (size_t i = 0; i < p->photo_count; i++)
         share[i] *= (double)p->photo_count / total;
+    return total;
 }
 
 // What is unknown besides the offsets: the curve; nothing, for sRGB; how much exposures are stretched.
@@ -373,15 +298,9 @@ enum unknown { CURVE, SRGB, SRGB_STRETCHED };
 static bool step(struct problem *p, enum unknown unknown)
 {
     size_t n = TERMS + p->photo_count;
-    double t[TERMS], *a = p->matrix, *b = p->unknown, information = 0;
-    memset(a, 0, n * n * sizeof *a);
-    memset(b, 0, n * sizeof *b);
-    for (size_t point = 0; point < p->samples->point_count; point++)
-        add_point(p, point, a, b);
-    for (size_t i = 0; i < p->samples->count; i++)
-        information += weight_of(p, i);
-    add_smoothness(a, n, SMOOTHNESS * information);
-    set_shares(p);
+    double t[TERMS], *a = p->fit.matrix, *b = p->fit.x;
+    orl_robust_equations(&p->fit, n, p, set_equation);
+    add_smoothness(a, n, SMOOTHNESS * set_shares(p));
     add_offsets(p, unknown == SRGB_STRETCHED, a, n);
     for (size_t k = 0; k < TERMS; k++)
         a[k * n + k] += unknown == CURVE ? PULL : FIRM * FIRM;
@@ -417,17 +336,17 @@ static void finish_curve(const struct problem *p, float linear[256])
 // Iteratively reweighted least squares. *spread_ev: the spread of the residuals.
 static bool iterate(struct problem *p, enum unknown unknown, double *spread_ev)
 {
-    reset_weights(p);
+    orl_robust_reset(&p->fit);
     set_residuals(p);
     for (int i = 0; i < ITERATIONS; i++) {
-        reweigh(p, i >= ITERATIONS - TUKEY_ITERATIONS);
+        orl_robust_reweigh(&p->fit, i >= ITERATIONS - TUKEY_ITERATIONS, 0.05);
         if (!step(p, unknown))
             return false;
         set_residuals(p);
     }
-    reset_weights(p);
+    orl_robust_reset(&p->fit);
     set_residuals(p);
-    *spread_ev = spread(p, false) / LN2;
+    *spread_ev = orl_robust_spread(&p->fit, false) / LN2;
     return true;
 }
 
@@ -438,9 +357,9 @@ static double judge_curve(struct problem *p, const float linear[256])
         p->off[v] = log(fmax((double)linear[v], 1e-9)) - p->srgb[v];
     p->off[0] = p->off[1];
     memset(p->offset, 0, p->photo_count * sizeof *p->offset);
-    reset_weights(p);
+    orl_robust_reset(&p->fit);
     set_residuals(p);
-    return spread(p, false) / LN2;
+    return orl_robust_spread(&p->fit, false) / LN2;
 }
 
 // Fits sRGB. Shutter times are told as 1/60 where they are 1/64: a stretch of the exposures by so little
@@ -512,21 +431,14 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
     if (!(exposure_range(samples, photos) >= ORL_RESPONSE_RANGE_EV))
         return ORL_OK;
     fit->outcome = ORL_RESPONSE_FOUND;
-    size_t count = samples->count;
     struct problem p = {.samples = samples, .photos = photos, .photo_count = photo_count};
-    size_t unknowns = TERMS + photo_count;
-    p.matrix = orl_array(log, unknowns, (unknowns + 3) * sizeof *p.matrix);
-    float *block = orl_array(log, count, 5 * sizeof *block);
-    enum orl_result result = block && p.matrix ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = orl_robust_init(log, samples, TERMS + photo_count, &p.fit);
+    p.light = orl_array(log, samples->count, sizeof *p.light);
+    p.offset = orl_array(log, photo_count, 2 * sizeof *p.offset);
+    if (!p.light || !p.offset)
+        result = ORL_ERR_MEMORY;
     if (result == ORL_OK) {
-        p.unknown = p.matrix + unknowns * unknowns;
-        p.offset = p.unknown + unknowns;
         p.share = p.offset + photo_count;
-        p.sigma = block;
-        p.weight = block + count;
-        p.residual = block + 2 * count;
-        p.scratch = block + 3 * count;
-        p.light = block + 4 * count;
         set_logarithms(&p);
     }
     bool finds = method == ORL_RESPONSE_POLYNOMIAL;
@@ -541,7 +453,8 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
         fit->outcome = ORL_RESPONSE_SRGB;
     if (result != ORL_OK || fit->outcome != ORL_RESPONSE_FOUND)
         set_srgb(response);
-    free(block);
-    free(p.matrix);
+    orl_robust_finish(&p.fit);
+    free(p.light);
+    free(p.offset);
     return result;
 }

@@ -12,8 +12,6 @@
 
 enum {
     LEVELS_MAX = 8,       // of a photograph's pyramid
-    PHOTOS_PER_POINT = 32, // more observations add little, and the cost of alignment grows with
-                           // their square
     POINTS_MAX = 100000,  // that are examined
 };
 static const uint8_t CLIPPED = 254, BLACK = 0;
@@ -243,10 +241,10 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
 // a phase that differs between points.
 static bool is_kept(size_t index, size_t seen, size_t point)
 {
-    if (seen <= PHOTOS_PER_POINT)
+    if (seen <= ORL_SAMPLES_PER_POINT)
         return true;
     size_t turned = (index + point) % seen;
-    return turned * PHOTOS_PER_POINT / seen != (turned + 1) * PHOTOS_PER_POINT / seen;
+    return turned * ORL_SAMPLES_PER_POINT / seen != (turned + 1) * ORL_SAMPLES_PER_POINT / seen;
 }
 
 enum orl_result orl_samples_collect(const struct orl_log *log,
@@ -268,7 +266,7 @@ enum orl_result orl_samples_collect(const struct orl_log *log,
         if (seen[p] < 2)
             continue;
         samples->first[samples->point_count++] = samples->count;
-        samples->count += seen[p] < PHOTOS_PER_POINT ? seen[p] : PHOTOS_PER_POINT;
+        samples->count += seen[p] < ORL_SAMPLES_PER_POINT ? seen[p] : ORL_SAMPLES_PER_POINT;
     }
     if (result == ORL_OK)
         samples->first[samples->point_count] = samples->count;

@@ -21,6 +21,8 @@ struct orl_observation {
     float r2;       // squared distance from the principal point, in half diagonals
 };
 
+enum { ORL_SAMPLES_PER_POINT = 32 }; // more add little, and the cost of alignment grows with their square
+
 struct orl_samples {
     size_t point_count, count;
     size_t *first; // point_count + 1: where a point's observations begin
@@ -35,8 +37,8 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
                                  size_t photo_count, const struct orl_points *points,
                                  struct orl_samples *samples) ORL_CHECK_RESULT;
 void orl_samples_finish(struct orl_samples *samples);
-// Sorts observations by their points, points[i] < point_limit. A point keeps at most 32
-// observations.
+// Sorts observations by their points, points[i] < point_limit. A point keeps at most
+// ORL_SAMPLES_PER_POINT observations.
 enum orl_result orl_samples_collect(const struct orl_log *log,
                                     const struct orl_observation *observations,
                                     const uint32_t *points, size_t count, size_t point_limit,
