@@ -22,19 +22,17 @@ struct exposures {
     int count;
 };
 
-// The series of the photographs that take part, each with the exposure of its darkest photograph.
+// Sets the series of the photographs that take part, each with the exposure of its darkest photograph.
 static enum orl_result find_exposures(const struct orl_log *log, const struct orl_response_photo *photos,
                                       size_t photo_count, struct exposures *e)
 {
     struct orl_exposure *series = orl_array(log, photo_count, sizeof *series);
-    *e = (struct exposures){.of = orl_array(log, photo_count, sizeof *e->of),
-                            .ev = orl_array(log, photo_count, sizeof *e->ev)};
-    enum orl_result result = series && e->of && e->ev ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
+    ORL_TRY_MEMORY(series);
+    for (size_t i = 0; i < photo_count; i++) {
         series[i] = (struct orl_exposure){.known = photos[i].use, .ev = photos[i].ev};
         e->ev[i] = INFINITY;
     }
-    ORL_THEN(result, orl_exposures_group(log, series, photo_count, ORL_EXPOSURE_STEP_EV, &e->count));
+    enum orl_result result = orl_exposures_group(log, series, photo_count, ORL_EXPOSURE_STEP_EV, &e->count);
     for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
         e->of[i] = photos[i].use ? series[i].series : -1;
         if (photos[i].use)
@@ -119,38 +117,26 @@ enum orl_result orl_response_opencv(const struct orl_log *log, enum orl_response
                                     const struct orl_samples *samples, const struct orl_response_photo *photos,
                                     size_t photo_count, float linear[3][256], bool *found)
 {
-    struct exposures e;
-    struct orl_image values = {0};
-    const struct orl_observation **seen = NULL;
-    double *light = NULL;
-    size_t points = 0, step = 1;
     bool is_debevec = method == ORL_RESPONSE_DEBEVEC;
-    enum orl_result result = find_exposures(log, photos, photo_count, &e);
-    *found = false;
-    if (result == ORL_OK && e.count) {
-        seen = orl_array(log, (size_t)e.count, sizeof *seen);
-        light = orl_array(log, (size_t)e.count, sizeof *light);
-        result = seen && light ? ORL_OK : ORL_ERR_MEMORY;
-    }
-    if (result != ORL_OK || !e.count)
-        goto end;
-    points = collect(samples, &e, 1, seen, NULL);
+    struct orl_image values = {0};
+    struct exposures e = {.of = orl_array(log, photo_count, sizeof *e.of),
+                          .ev = orl_array(log, photo_count, sizeof *e.ev)};
+    const struct orl_observation **seen = orl_array(log, photo_count, sizeof *seen);
+    enum orl_result result = e.of && e.ev && seen ? find_exposures(log, photos, photo_count, &e) : ORL_ERR_MEMORY;
+    size_t points = result == ORL_OK ? collect(samples, &e, 1, seen, NULL) : 0;
+    size_t step = is_debevec ? (points + DEBEVEC_MAX - 1) / DEBEVEC_MAX : 1;
     *found = points >= POINTS_MIN;
-    if (!*found)
-        goto end;
-    step = is_debevec ? (points + DEBEVEC_MAX - 1) / DEBEVEC_MAX : 1;
-    result = orl_image_init(log, &values, (int)((points + step - 1) / step), e.count, 3, ORL_PIXEL_U8);
-    if (result != ORL_OK)
-        goto end;
-    collect(samples, &e, step, seen, &values);
-    for (int k = 0; k < e.count; k++)
-        light[k] = exp2(e.ev[k]);
-    result = orl_bridge_response(log, is_debevec ? ORL_CALIBRATION_DEBEVEC : ORL_CALIBRATION_ROBERTSON, &values,
-                                 light, linear);
-end:
+    if (*found)
+        result = orl_image_init(log, &values, (int)((points + step - 1) / step), e.count, 3, ORL_PIXEL_U8);
+    if (*found && result == ORL_OK) {
+        collect(samples, &e, step, seen, &values);
+        for (int k = 0; k < e.count; k++)
+            e.ev[k] = exp2(e.ev[k]);
+        result = orl_bridge_response(log, is_debevec ? ORL_CALIBRATION_DEBEVEC : ORL_CALIBRATION_ROBERTSON, &values,
+                                     e.ev, linear);
+    }
     orl_image_finish(&values);
     free(seen);
-    free(light);
     free(e.of);
     free(e.ev);
     return result;
