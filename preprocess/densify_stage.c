@@ -6,7 +6,6 @@
 
 #include "core/memory.h"
 #include "core/order.h"
-#include "oriel/gpu.h"
 #include "preprocess/densify/densify.h"
 #include "preprocess/job/colmap_run.h"
 
@@ -95,12 +94,9 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
                                   json_t *record)
 {
     struct orl_densify_params params = orl_densify_settings(job->params);
+    struct orl_gpu *gpu;
     ORL_TRY(orl_job_sparse(job, &params.model));
-    struct orl_gpu *own = NULL, *gpu = job->params->gpu;
-    if (!gpu) {
-        ORL_TRY(orl_gpu_create(job->log, &(struct orl_gpu_params){.shader_dir = job->params->shader_dir}, &own));
-        gpu = own;
-    }
+    ORL_TRY(orl_job_gpu(job, &gpu));
     params.masks_dir = job->params->masks_dir ? ORL_PATH(job->dir, "masks") : NULL;
     const struct orl_gpu_caps *caps = orl_gpu_caps(gpu);
     json_object_set_new(record, "tool", json_string("built-in PatchMatch"));
@@ -111,9 +107,7 @@ static enum orl_result densify_gl(struct orl_job *job, const struct orl_names *t
         "window_step", params.window_step));
     orl_logf(job->log, ORL_LOG_INFO, "densify: %zu photographs on %s", train->count,
              caps->renderer);
-    enum orl_result result = orl_densify(gpu, job->dir, train, &params, job->progress);
-    orl_gpu_destroy(&own);
-    return result;
+    return orl_densify(gpu, job->dir, train, &params, job->progress);
 }
 
 static enum orl_result densify_colmap(struct orl_job *job, json_t *record)

@@ -54,18 +54,17 @@ static enum orl_result find(struct orl_job *job, struct orl_gpu *gpu, struct orl
 enum orl_result orl_stage_occluders(struct orl_job *job, json_t *record)
 {
     struct orl_scene *scene = NULL;
-    struct orl_drawing drawing = {0};
+    struct orl_gpu *gpu = NULL;
     json_t *occluded = json_object();
     enum orl_result result = json_object_set_new(record, "occluded", occluded) == 0
                                  ? orl_scene_json_open(job, &scene)
                                  : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the occluders");
     if (result == ORL_OK)
-        orl_drawing_begin(job, scene, "occluders: none are looked for", &drawing);
-    if (result == ORL_OK && drawing.gpu)
-        result = find(job, drawing.gpu, scene, occluded);
+        gpu = orl_drawing_device(job, scene, "occluders: none are looked for");
+    if (gpu)
+        result = find(job, gpu, scene, occluded);
     else if (result == ORL_OK)
         result = orl_job_remove(job, "occluders");
-    orl_drawing_end(&drawing);
     orl_scene_destroy(&scene);
     return result;
 }

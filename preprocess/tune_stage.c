@@ -51,20 +51,19 @@ static enum orl_result tune(struct orl_job *job, struct orl_gpu *gpu, struct orl
 enum orl_result orl_stage_tune(struct orl_job *job, json_t *record)
 {
     struct orl_scene *scene = NULL;
-    struct orl_drawing drawing = {0};
+    struct orl_gpu *gpu = NULL;
     json_t *tuned = json_object();
     enum orl_result result = json_object_set_new(record, "tuned", tuned) == 0
                                  ? orl_scene_json_open(job, &scene)
                                  : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
     if (result == ORL_OK && job->params->adapt == ORL_ADAPT_AUTO &&
         scene->photo_count - orl_heldout_count(scene) >= VIEWS_MIN)
-        orl_drawing_begin(job, scene, "tune: settings stay those of the method", &drawing);
-    if (drawing.gpu)
-        result = tune(job, drawing.gpu, scene, tuned);
+        gpu = orl_drawing_device(job, scene, "tune: settings stay those of the method");
+    if (gpu)
+        result = tune(job, gpu, scene, tuned);
     if (result == ORL_OK &&
         json_object_set_new(record, "backdrop", orl_manifest_backdrop(scene->backdrop_rests)) != 0)
         result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the settings");
-    orl_drawing_end(&drawing);
     orl_scene_destroy(&scene);
     return result;
 }

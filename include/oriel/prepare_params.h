@@ -169,7 +169,7 @@ struct orl_prepare_params {
     ORL_PREPARE_OPTIONS(ORL_OPTION_MEMBER)
     const char *const *inputs; // photographs, videos and folders of them, with their sub-folders
     size_t input_count;
-    struct orl_gpu *gpu;       // NULL: opened when densify needs it
+    struct orl_gpu *gpu;       // NULL: opened when a stage needs it
     const char *shader_dir;    // for a GPU opened here; NULL: the embedded shaders
 };
 #define ORL_PREPARE_DEFAULTS ORL_PREPARE_OPTIONS(ORL_OPTION_PRESET) .inputs = NULL

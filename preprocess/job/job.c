@@ -147,8 +147,18 @@ void orl_job_close(struct orl_job *job)
     json_decref(job->skipped);
     json_decref(job->stages);
     json_decref(job->programs);
+    orl_gpu_destroy(&job->own_gpu);
     orl_unlock(&job->lock_fd);
     free(job->dir);
+}
+
+enum orl_result orl_job_gpu(struct orl_job *job, struct orl_gpu **gpu)
+{
+    const struct orl_gpu_params params = {.shader_dir = job->params->shader_dir};
+    if (!job->params->gpu && !job->own_gpu)
+        ORL_TRY(orl_gpu_create(job->log, &params, &job->own_gpu));
+    *gpu = job->params->gpu ? job->params->gpu : job->own_gpu;
+    return ORL_OK;
 }
 
 // --- files in the scene ---

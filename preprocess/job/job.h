@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "core/file.h"
+#include "oriel/gpu.h"
 #include "oriel/progress.h"
 #include "io/picture.h"
 #include "preprocess/job/exposure_list.h"
@@ -82,6 +83,7 @@ struct orl_job {
     // Processor time of child processes since the stage began.
     double child_cpu_s;
     size_t child_peak_bytes;
+    struct orl_gpu *own_gpu; // owned; of orl_job_gpu where the parameters have none
     json_t *programs; // owned; {"COMMAND_s": its processor time} of the stage that runs
 };
 
@@ -102,6 +104,8 @@ enum orl_result orl_job_take_sources(struct orl_job *job) ORL_CHECK_RESULT;
 // corrected command would refuse. Leaves a folder alone that held files before.
 void orl_job_leave(const struct orl_job *job);
 void orl_job_close(struct orl_job *job);
+// The device of all stages: that of the parameters, or one that the first call opens and the job owns.
+enum orl_result orl_job_gpu(struct orl_job *job, struct orl_gpu **gpu) ORL_CHECK_RESULT;
 void orl_source_finish(struct orl_source *source);
 
 // --- files in the scene ---
