@@ -1,11 +1,9 @@
 // The figures as files.
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#include <jansson.h>
-
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/new_dir.h"
 #include "core/process.h"
@@ -51,37 +49,23 @@ static enum orl_result write_depth(const struct job *job, int camera, int frame,
     return orl_exr_write(job->log, VIEW_PATH(job, "depth", camera, frame, ".exr"), &exr);
 }
 
-static json_t *rows_json(const double *values, int rows, int columns)
-{
-    json_t *list = json_array();
-    for (int r = 0; r < rows; r++) {
-        json_t *row = json_array();
-        for (int c = 0; c < columns; c++)
-            json_array_append_new(row, json_real(values[r * columns + c]));
-        json_array_append_new(list, row);
-    }
-    return list;
-}
-
 static enum orl_result write_cameras(const struct job *job)
 {
     json_t *list = json_array();
     for (int i = 0; i < job->params->cameras; i++) {
         const struct orl_camera *c = &job->views[i].camera;
-        const struct orl_pose *pose = &job->views[i].cam_from_world;
-        const double k[9] = {c->fx, 0, c->cx, 0, c->fy, c->cy, 0, 0, 1};
+        const double *t = job->views[i].cam_from_world.t, (*r)[3] = job->views[i].cam_from_world.r;
         json_array_append_new(
-            list, json_pack("{s:o, s:i, s:i, s:o, s:o, s:[fff], s:[]}", "name",
+            list, json_pack("{s:o, s:i, s:i, s:[[fff],[fff],[fff]], s:[[fff],[fff],[fff]], s:[fff], s:[]}", "name",
                             json_sprintf("cam%02d", i), "width", c->width, "height", c->height,
-                            "K", rows_json(k, 3, 3), "R", rows_json(&pose->r[0][0], 3, 3), "t",
-                            pose->t[0], pose->t[1], pose->t[2], "dist"));
+                            "K", c->fx, 0.0, c->cx, 0.0, c->fy, c->cy, 0.0, 0.0, 1.0,
+                            "R", r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2], r[2][0], r[2][1], r[2][2],
+                            "t", t[0], t[1], t[2], "dist"));
     }
     json_t *root = json_pack("{s:f, s:o, s:o}", "pixel_centre", 0.5, "room",
                              orl_manifest_room(&orl_figures_room), "cameras", list);
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
-    enum orl_result result =
-        text ? orl_file_write(job->log, ORL_PATH(job->dir, "cameras.json"), text, strlen(text)) : ORL_ERR_MEMORY;
-    free(text);
+    enum orl_result result = orl_json_write_digits(job->log, ORL_PATH(job->dir, "cameras.json"), root,
+                                                   ORL_JSON_ALL_DIGITS);
     json_decref(root);
     return result;
 }

@@ -4,9 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <jansson.h>
-
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/new_dir.h"
 #include "datasets/synth.h"
@@ -111,14 +110,11 @@ static enum orl_result write_colmap_images(const struct job *job)
     return orl_file_write(job->log, ORL_PATH(job->truth, "sparse/points3D.txt"), "", 0);
 }
 
-// Takes ownership of `root`. A NULL value means that memory ran out.
+// Takes ownership of `root`.
 static enum orl_result write_json(const struct job *job, const char *name, json_t *root)
 {
-    char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(17)) : NULL;
-    enum orl_result result =
-        text ? orl_file_write(job->log, ORL_PATH(job->truth, "%s", name), text, strlen(text))
-             : orl_fail(job->log, ORL_ERR_MEMORY, "%s: out of memory", name);
-    free(text);
+    enum orl_result result = orl_json_write_digits(job->log, ORL_PATH(job->truth, "%s", name), root,
+                                                   ORL_JSON_ALL_DIGITS);
     json_decref(root);
     return result;
 }

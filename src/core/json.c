@@ -45,14 +45,20 @@ enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_
     return orl_fail(log, ORL_ERR_FORMAT, "%s: byte 0: not a JSON object", path);
 }
 
-enum orl_result orl_json_write(const struct orl_log *log, const char *path, const json_t *value)
+enum orl_result orl_json_write_digits(const struct orl_log *log, const char *path, const json_t *value,
+                                      size_t digits)
 {
-    char *text = json_dumps(value, JSON_INDENT(1) | JSON_REAL_PRECISION(ORL_JSON_DIGITS));
+    char *text = json_dumps(value, JSON_INDENT(1) | JSON_REAL_PRECISION(digits));
     if (!text)
         return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for its text", path);
     enum orl_result result = orl_file_write(log, path, text, strlen(text));
     free(text);
     return result;
+}
+
+enum orl_result orl_json_write(const struct orl_log *log, const char *path, const json_t *value)
+{
+    return orl_json_write_digits(log, path, value, ORL_JSON_DIGITS);
 }
 
 json_t *orl_json_string(const char *text)

@@ -13,11 +13,15 @@ enum orl_result orl_json_parse(const struct orl_log *log, const char *path, cons
 // Parses a JSON object of at most 64 MiB, released with json_decref.
 enum orl_result orl_json_read(const struct orl_log *log, const char *path,
                               json_t **out) ORL_CHECK_RESULT;
-enum { ORL_JSON_DIGITS = 9 }; // of the numbers in files that are not integers
+// Of the numbers in files that are not integers; so many that none changes.
+enum { ORL_JSON_DIGITS = 9, ORL_JSON_ALL_DIGITS = 17 };
 // Writes indented JSON with keys in order of insertion. The file is written atomically. Without a
 // value, memory has run out.
 enum orl_result orl_json_write(const struct orl_log *log, const char *path,
                                const json_t *value) ORL_CHECK_RESULT;
+// The same with another number of digits.
+enum orl_result orl_json_write_digits(const struct orl_log *log, const char *path, const json_t *value,
+                                      size_t digits) ORL_CHECK_RESULT;
 
 // A JSON string, which must be UTF-8. Bytes of `text` that are not UTF-8, as file names may have,
 // become "\xNN". NULL when memory runs out.
