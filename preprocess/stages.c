@@ -16,7 +16,6 @@
 #include "preprocess/densify/densify.h"
 #include "preprocess/densify_stage.h"
 #include "preprocess/photos/normalise.h"
-#include "preprocess/results.h"
 #include "scene/manifest.h"
 #include "scene/point_lod.h"
 
@@ -165,6 +164,68 @@ static enum orl_result sum_record(const struct orl_job *job, json_t *record, cha
     return result;
 }
 
+// --- checksums of the files that a stage wrote, by which a later run finds damaged and missing ones ---
+
+static enum orl_result add_file(const struct orl_job *job, const char *path, json_t *files)
+{
+    char sum[ORL_CHECKSUM_SIZE];
+    enum orl_result result = orl_flush(job->log, path); // COLMAP does not
+    ORL_THEN(result, orl_file_checksum(job->log, path, sum));
+    if (result == ORL_OK &&
+        json_object_set_new(files, path + strlen(job->dir) + 1, json_string(sum)) != 0)
+        result = orl_fail(job->log, ORL_ERR_MEMORY, "no memory for a checksum");
+    return result;
+}
+
+static enum orl_result add_folder(const struct orl_job *job, const char *dir, json_t *files)
+{
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(job->log, dir, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
+        const char *path = ORL_PATH(dir, "%s", names.items[i]);
+        if (orl_progress_cancelled(job->progress))
+            result = ORL_ERR_CANCELLED;
+        else if (orl_path_is_file(path))
+            result = add_file(job, path, files);
+    }
+    orl_names_finish(&names);
+    return result;
+}
+
+// Adds {name in the scene: checksum} to `files`, for each file of `names` and for all files in its
+// folders. NULL ends `names`. Missing files are left out.
+static enum orl_result sum_results(const struct orl_job *job, const char *const *names, json_t *files)
+{
+    for (; *names; names++) {
+        const char *path = ORL_PATH(job->dir, "%s", *names);
+        if (orl_path_is_dir(path))
+            ORL_TRY(add_folder(job, path, files));
+        else if (orl_path_is_file(path))
+            ORL_TRY(add_file(job, path, files));
+    }
+    return ORL_OK;
+}
+
+// Compares each file with its checksum. Returns the first that differs or is missing, *why being the
+// reason; NULL: none.
+static const char *check_results(const struct orl_job *job, const json_t *files, const char **why)
+{
+    const char *name;
+    json_t *value;
+    json_object_foreach((json_t *)(uintptr_t)files, name, value) {
+        char sum[ORL_CHECKSUM_SIZE];
+        const char *told = json_string_value(value), *path = ORL_PATH(job->dir, "%s", name);
+        bool read = orl_path_is_file(path) && orl_file_checksum(NULL, path, sum) == ORL_OK;
+        if (read && told && strcmp(sum, told) == 0)
+            continue;
+        *why = read ? "changed since it was made" : "missing";
+        return name;
+    }
+    return NULL;
+}
+
+// --- records ---
+
 json_t *orl_stage_settings(const struct orl_job *job, enum orl_stage_id id)
 {
     json_t *settings = stages[id].settings ? stages[id].settings(job) : json_object();
@@ -276,7 +337,7 @@ static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id,
                  "or lacks a part; %s is done again", job->dir, stages[id].name, stages[id].name);
     if (!*there)
         return result;
-    const char *damaged = orl_results_check(job, json_object_get(record, "files"), &why);
+    const char *damaged = check_results(job, json_object_get(record, "files"), &why);
     if (damaged)
         orl_logf(job->log, ORL_LOG_WARNING, "%s/%s: %s; %s is done again", job->dir, damaged, why,
                  stages[id].name);
@@ -380,7 +441,7 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     enum orl_result result = files ? orl_job_need_disk(job, stages[id].name, disk_need(job, id))
                                    : ORL_ERR_MEMORY;
     ORL_THEN(result, stages[id].run(job, record));
-    ORL_THEN(result, orl_results_sum(job, stages[id].results, files));
+    ORL_THEN(result, sum_results(job, stages[id].results, files));
     if (json_object_size(files))
         json_object_set(record, "files", files);
     json_decref(files);
