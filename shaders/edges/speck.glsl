@@ -54,9 +54,10 @@ int speck_median(float values[25])
 // varies: how much the best photograph of each varies about its place.
 int speck_taken(float light[25], float varies[25])
 {
-    int median = speck_median(light), quiet = 0; // pixels whose photographs vary less than the middle differs
+    int median = speck_median(light);
+    int below = 0; // pixels whose photographs vary less than the middle differs from the median
     float differs = abs(light[12] * light[12] - light[median] * light[median]);
     for (int k = 0; k < 25; k++)
-        quiet += SPECK_VARIES * varies[k] < differs ? 1 : 0;
-    return speck_stands_out(light) && quiet > 12 ? median : 12;
+        below += SPECK_VARIES * varies[k] < differs ? 1 : 0;
+    return speck_stands_out(light) && below > 12 ? median : 12;
 }
