@@ -90,21 +90,18 @@ static enum orl_result check_window(struct exr_reader *reader, int *width_out, i
 // --- pixels ---
 
 // Decodes one chunk whose first sample belongs at column x, row y of the image.
-static exr_result_t read_chunk(struct exr_reader *reader, const exr_chunk_info_t *chunk, int x,
-                               int y)
+static enum orl_result read_chunk(struct exr_reader *reader, const exr_chunk_info_t *chunk, int x, int y)
 {
     exr_decode_pipeline_t *pipe = &reader->pipe;
     struct orl_image *image = reader->image;
     // The limit covers the whole chunk: channels that are not read are decoded too.
     if (chunk->unpacked_size > (uint64_t)EXR_MAX_CHUNK_MIB << 20)
-        return EXR_ERR_OUT_OF_MEMORY;
+        return check(reader, EXR_ERR_OUT_OF_MEMORY);
     if (chunk->width > image->width - x || chunk->height > image->height - y)
-        return EXR_ERR_BAD_CHUNK_LEADER;
+        return check(reader, EXR_ERR_BAD_CHUNK_LEADER);
     bool first = !reader->pipe_ready;
-    exr_result_t code = first ? exr_decoding_initialize(reader->context, 0, chunk, pipe)
-                              : exr_decoding_update(reader->context, 0, chunk, pipe);
-    if (code != EXR_ERR_SUCCESS)
-        return code;
+    ORL_TRY(check(reader, first ? exr_decoding_initialize(reader->context, 0, chunk, pipe)
+                                : exr_decoding_update(reader->context, 0, chunk, pipe)));
     reader->pipe_ready = true;
     size_t pixel = (size_t)y * (size_t)image->width + (size_t)x;
     for (int i = 0; i < pipe->channel_count; i++) {
@@ -122,28 +119,28 @@ static exr_result_t read_chunk(struct exr_reader *reader, const exr_chunk_info_t
         }
     }
     if (first)
-        code = exr_decoding_choose_default_routines(reader->context, 0, pipe);
-    return code == EXR_ERR_SUCCESS ? exr_decoding_run(reader->context, 0, pipe) : code;
+        ORL_TRY(check(reader, exr_decoding_choose_default_routines(reader->context, 0, pipe)));
+    return check(reader, exr_decoding_run(reader->context, 0, pipe));
 }
 
 // Reads the tiles of the finest level, or chunks of scanlines, which are tiles as wide as the picture.
-static exr_result_t read_chunks(struct exr_reader *reader, bool tiled)
+static enum orl_result read_chunks(struct exr_reader *reader, bool tiled)
 {
     const struct orl_image *image = reader->image;
     int32_t width = image->width, height = 0;
-    exr_result_t code = tiled ? exr_get_tile_sizes(reader->context, 0, 0, 0, &width, &height)
-                              : exr_get_scanlines_per_chunk(reader->context, 0, &height);
-    if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1))
-        code = EXR_ERR_BAD_CHUNK_LEADER;
-    for (int y = 0, row = 0; y < image->height && code == EXR_ERR_SUCCESS; y += height, row++)
-        for (int x = 0, column = 0; x < image->width && code == EXR_ERR_SUCCESS; x += width, column++) {
+    ORL_TRY(check(reader, tiled ? exr_get_tile_sizes(reader->context, 0, 0, 0, &width, &height)
+                                : exr_get_scanlines_per_chunk(reader->context, 0, &height)));
+    if (width < 1 || height < 1)
+        return check(reader, EXR_ERR_BAD_CHUNK_LEADER);
+    for (int y = 0, row = 0; y < image->height; y += height, row++)
+        for (int x = 0, column = 0; x < image->width; x += width, column++) {
             exr_chunk_info_t chunk;
-            code = tiled ? exr_read_tile_chunk_info(reader->context, 0, column, row, 0, 0, &chunk)
-                         : exr_read_scanline_chunk_info(reader->context, 0, reader->window.min.y + y, &chunk);
-            if (code == EXR_ERR_SUCCESS)
-                code = read_chunk(reader, &chunk, x, y);
+            ORL_TRY(check(reader, tiled ? exr_read_tile_chunk_info(reader->context, 0, column, row, 0, 0, &chunk)
+                                        : exr_read_scanline_chunk_info(reader->context, 0,
+                                                                       reader->window.min.y + y, &chunk)));
+            ORL_TRY(read_chunk(reader, &chunk, x, y));
         }
-    return code;
+    return ORL_OK;
 }
 
 static enum orl_result read_part(struct exr_reader *reader)
@@ -159,7 +156,7 @@ static enum orl_result read_part(struct exr_reader *reader)
     ORL_TRY(orl_picture_check_memory(reader->log, reader->path, (uint64_t)width, (uint64_t)height,
                                      (uint64_t)reader->count * sizeof(float)));
     ORL_TRY(orl_image_init(reader->log, reader->image, width, height, reader->count, ORL_PIXEL_F32));
-    return check(reader, read_chunks(reader, storage == EXR_STORAGE_TILED));
+    return read_chunks(reader, storage == EXR_STORAGE_TILED);
 }
 
 static enum orl_result start(struct exr_reader *reader)

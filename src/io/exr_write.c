@@ -79,71 +79,70 @@ static exr_attr_m44f_t world_to_ndc(const struct orl_view *view)
     return m;
 }
 
+// --- header ---
+
 // The part of the plane at distance 1 that the picture shows, with y up.
-static exr_result_t set_screen_window(exr_context_t context, const struct orl_camera *c)
+static enum orl_result set_screen_window(const struct exr_writer *writer, const struct orl_camera *c)
 {
     const exr_attr_v2f_t centre = {.x = (float)((0.5 * c->width - c->cx) / c->fx),
                                    .y = (float)((c->cy - 0.5 * c->height) / c->fy)};
-    exr_result_t code = exr_set_screen_window_width(context, 0, (float)(c->width / c->fx));
-    return code == EXR_ERR_SUCCESS ? exr_set_screen_window_center(context, 0, &centre) : code;
+    ORL_TRY(check(writer, exr_set_screen_window_width(writer->context, 0, (float)(c->width / c->fx))));
+    return check(writer, exr_set_screen_window_center(writer->context, 0, &centre));
 }
 
-// --- header ---
-
-static exr_result_t set_attributes(exr_context_t context,
-                                   const struct orl_exr_view_attributes *params)
+static enum orl_result set_attributes(const struct exr_writer *writer)
 {
-    exr_result_t code = exr_attr_set_string(context, 0, "software", "Oriel " ORL_VERSION);
-    if (code == EXR_ERR_SUCCESS && params->view) {
-        exr_attr_m44f_t camera = world_to_camera(&params->view->cam_from_world);
-        exr_attr_m44f_t ndc = world_to_ndc(params->view);
-        code = exr_attr_set_m44f(context, 0, "worldToCamera", &camera);
-        if (code == EXR_ERR_SUCCESS && !params->latlong)
-            code = exr_attr_set_m44f(context, 0, "worldToNDC", &ndc);
-        if (code == EXR_ERR_SUCCESS && !params->latlong)
-            code = set_screen_window(context, &params->view->camera);
+    const struct orl_exr_view_attributes *a = &writer->params->attributes;
+    exr_context_t context = writer->context;
+    ORL_TRY(check(writer, exr_attr_set_string(context, 0, "software", "Oriel " ORL_VERSION)));
+    if (a->view) {
+        exr_attr_m44f_t camera = world_to_camera(&a->view->cam_from_world);
+        ORL_TRY(check(writer, exr_attr_set_m44f(context, 0, "worldToCamera", &camera)));
     }
-    if (code == EXR_ERR_SUCCESS && params->latlong)
-        code = exr_attr_set_envmap(context, 0, "envmap", EXR_ENVMAP_LATLONG);
+    if (a->view && !a->latlong) {
+        exr_attr_m44f_t ndc = world_to_ndc(a->view);
+        ORL_TRY(check(writer, exr_attr_set_m44f(context, 0, "worldToNDC", &ndc)));
+        ORL_TRY(set_screen_window(writer, &a->view->camera));
+    }
+    if (a->latlong)
+        ORL_TRY(check(writer, exr_attr_set_envmap(context, 0, "envmap", EXR_ENVMAP_LATLONG)));
     const struct {
         const char *name;
         double value;
-    } numbers[] = {{"expTime", params->exposure_s},
-                   {"isoSpeed", params->iso},
-                   {"aperture", params->aperture},
-                   {"whiteLuminance", params->white_luminance}};
-    for (size_t i = 0; i < ORL_COUNT(numbers) && code == EXR_ERR_SUCCESS; i++)
+    } numbers[] = {{"expTime", a->exposure_s},
+                   {"isoSpeed", a->iso},
+                   {"aperture", a->aperture},
+                   {"whiteLuminance", a->white_luminance}};
+    for (size_t i = 0; i < ORL_COUNT(numbers); i++)
         if (numbers[i].value > 0)
-            code = exr_attr_set_float(context, 0, numbers[i].name, (float)numbers[i].value);
-    if (code == EXR_ERR_SUCCESS && params->srgb_primaries) {
+            ORL_TRY(check(writer, exr_attr_set_float(context, 0, numbers[i].name, (float)numbers[i].value)));
+    if (a->srgb_primaries) {
         const exr_attr_chromaticities_t rec709 = {
             .red_x = 0.64f, .red_y = 0.33f, .green_x = 0.3f, .green_y = 0.6f,
             .blue_x = 0.15f, .blue_y = 0.06f, .white_x = 0.3127f, .white_y = 0.329f};
-        code = exr_attr_set_chromaticities(context, 0, "chromaticities", &rec709);
+        ORL_TRY(check(writer, exr_attr_set_chromaticities(context, 0, "chromaticities", &rec709)));
     }
-    if (code == EXR_ERR_SUCCESS && params->comments && *params->comments)
-        code = exr_attr_set_string(context, 0, "comments", params->comments);
-    return code;
+    if (a->comments && *a->comments)
+        ORL_TRY(check(writer, exr_attr_set_string(context, 0, "comments", a->comments)));
+    return ORL_OK;
 }
 
-static exr_result_t write_header(exr_context_t context, const struct orl_exr_params *params)
+static enum orl_result write_header(const struct exr_writer *writer)
 {
+    const struct orl_exr_params *params = writer->params;
     int part;
-    exr_result_t code = exr_add_part(context, NULL, EXR_STORAGE_SCANLINE, &part);
-    if (code == EXR_ERR_SUCCESS)
-        code = exr_initialize_required_attr_simple(context, part, params->width, params->height,
-                                                   params->compression == ORL_EXR_PIZ
-                                                       ? EXR_COMPRESSION_PIZ
-                                                       : EXR_COMPRESSION_ZIP);
-    for (int i = 0; i < params->channel_count && code == EXR_ERR_SUCCESS; i++) {
+    ORL_TRY(check(writer, exr_add_part(writer->context, NULL, EXR_STORAGE_SCANLINE, &part)));
+    ORL_TRY(check(writer, exr_initialize_required_attr_simple(
+                              writer->context, part, params->width, params->height,
+                              params->compression == ORL_EXR_PIZ ? EXR_COMPRESSION_PIZ : EXR_COMPRESSION_ZIP)));
+    for (int i = 0; i < params->channel_count; i++) {
         const struct orl_exr_channel *channel = &params->channels[i];
-        code = exr_add_channel(context, part, channel->name,
-                               channel->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
-                               EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+        ORL_TRY(check(writer, exr_add_channel(writer->context, part, channel->name,
+                                              channel->half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+                                              EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1)));
     }
-    if (code == EXR_ERR_SUCCESS)
-        code = set_attributes(context, &params->attributes);
-    return code == EXR_ERR_SUCCESS ? exr_write_header(context) : code;
+    ORL_TRY(set_attributes(writer));
+    return check(writer, exr_write_header(writer->context));
 }
 
 // --- pixels ---
@@ -186,30 +185,26 @@ static exr_result_t compress(exr_encode_pipeline_t *pipe)
     return code;
 }
 
-static exr_result_t choose_routines(struct exr_writer *writer)
+static enum orl_result choose_routines(struct exr_writer *writer)
 {
     exr_encode_pipeline_t *pipe = &writer->pipe;
-    exr_result_t code = exr_encoding_choose_default_routines(writer->context, 0, pipe);
-    if (code == EXR_ERR_SUCCESS && pipe->compress_fn) {
+    ORL_TRY(check(writer, exr_encoding_choose_default_routines(writer->context, 0, pipe)));
+    if (pipe->compress_fn) {
         writer->compress = pipe->compress_fn;
         pipe->compress_fn = compress;
         pipe->encoding_user_data = writer;
     }
-    return code;
+    return ORL_OK;
 }
 
-static exr_result_t write_chunk(struct exr_writer *writer, int y)
+static enum orl_result write_chunk(struct exr_writer *writer, int y)
 {
     exr_chunk_info_t chunk;
     exr_encode_pipeline_t *pipe = &writer->pipe;
-    exr_result_t code = exr_write_scanline_chunk_info(writer->context, 0, y, &chunk);
-    if (code != EXR_ERR_SUCCESS)
-        return code;
     bool first = !writer->pipe_ready;
-    code = first ? exr_encoding_initialize(writer->context, 0, &chunk, pipe)
-                 : exr_encoding_update(writer->context, 0, &chunk, pipe);
-    if (code != EXR_ERR_SUCCESS)
-        return code;
+    ORL_TRY(check(writer, exr_write_scanline_chunk_info(writer->context, 0, y, &chunk)));
+    ORL_TRY(check(writer, first ? exr_encoding_initialize(writer->context, 0, &chunk, pipe)
+                                : exr_encoding_update(writer->context, 0, &chunk, pipe)));
     writer->pipe_ready = true;
     size_t samples = (size_t)chunk.width * (size_t)chunk.height;
     for (int i = 0; i < pipe->channel_count; i++) {
@@ -217,7 +212,7 @@ static exr_result_t write_chunk(struct exr_writer *writer, int y)
         const struct orl_exr_channel *from = find_channel(writer->params, to->channel_name);
         float *rows = writer->rows + (size_t)i * samples;
         if (!from)
-            return EXR_ERR_INVALID_ARGUMENT;
+            return check(writer, EXR_ERR_INVALID_ARGUMENT);
         gather(writer->params, from, y, chunk.height, rows);
         to->user_data_type = EXR_PIXEL_FLOAT;
         to->user_bytes_per_element = sizeof(float);
@@ -226,26 +221,23 @@ static exr_result_t write_chunk(struct exr_writer *writer, int y)
         to->encode_from_ptr = (const uint8_t *)rows;
     }
     if (first)
-        code = choose_routines(writer);
-    return code == EXR_ERR_SUCCESS ? exr_encoding_run(writer->context, 0, pipe) : code;
+        ORL_TRY(choose_routines(writer));
+    return check(writer, exr_encoding_run(writer->context, 0, pipe));
 }
 
 static enum orl_result write_all(struct exr_writer *writer)
 {
     const struct orl_exr_params *params = writer->params;
     int32_t lines = 0;
-    exr_result_t code = write_header(writer->context, params);
-    if (code == EXR_ERR_SUCCESS)
-        code = exr_get_scanlines_per_chunk(writer->context, 0, &lines);
-    if (code != EXR_ERR_SUCCESS)
-        return check(writer, code);
+    ORL_TRY(write_header(writer));
+    ORL_TRY(check(writer, exr_get_scanlines_per_chunk(writer->context, 0, &lines)));
     writer->rows = orl_array(writer->log,
                              (size_t)params->width * (size_t)lines * (size_t)params->channel_count,
                              sizeof *writer->rows);
     ORL_TRY_MEMORY(writer->rows);
-    for (int y = 0; y < params->height && code == EXR_ERR_SUCCESS; y += lines)
-        code = write_chunk(writer, y);
-    return check(writer, code);
+    for (int y = 0; y < params->height; y += lines)
+        ORL_TRY(write_chunk(writer, y));
+    return ORL_OK;
 }
 
 static bool params_valid(const struct orl_exr_params *params)
