@@ -1,4 +1,4 @@
-// Colour profiles through Little CMS.
+// Colour profiles through Little CMS, which says nothing about one that is damaged.
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,46 +12,22 @@ const struct orl_primaries orl_primaries_rec709 = {
     .white = {0.3127, 0.3290}, .red = {0.64, 0.33}, .green = {0.30, 0.60}, .blue = {0.15, 0.06}};
 
 struct orl_profile {
-    cmsContext context;
     cmsHTRANSFORM transform;
     bool grey; // one channel
 };
 
-static cmsToneCurve *make_curve(cmsContext context, double gamma)
+static cmsHPROFILE make_rgb(const struct orl_primaries *p, double gamma)
 {
     const double srgb[5] = {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
-    return gamma > 0 ? cmsBuildGamma(context, gamma) : cmsBuildParametricToneCurve(context, 4, srgb);
-}
-
-static cmsHPROFILE make_rgb(cmsContext context, const struct orl_primaries *p, double gamma)
-{
     const cmsCIExyY white = {p->white[0], p->white[1], 1};
     const cmsCIExyYTRIPLE primaries = {
         {p->red[0], p->red[1], 1}, {p->green[0], p->green[1], 1}, {p->blue[0], p->blue[1], 1}};
-    cmsToneCurve *line = make_curve(context, gamma);
+    cmsToneCurve *line = gamma > 0 ? cmsBuildGamma(NULL, gamma) : cmsBuildParametricToneCurve(NULL, 4, srgb);
     cmsToneCurve *const curves[3] = {line, line, line};
-    cmsHPROFILE profile =
-        line ? cmsCreateRGBProfileTHR(context, &white, &primaries, curves) : NULL;
+    cmsHPROFILE profile = line ? cmsCreateRGBProfile(&white, &primaries, curves) : NULL;
     if (line)
         cmsFreeToneCurve(line);
     return profile;
-}
-
-// Takes `from`, which may be NULL.
-static bool make_transform(struct orl_profile *profile, cmsHPROFILE from)
-{
-    cmsHPROFILE to = make_rgb(profile->context, &orl_primaries_rec709, 1);
-    cmsColorSpaceSignature space = from ? cmsGetColorSpace(from) : cmsSigLabData;
-    profile->grey = space == cmsSigGrayData;
-    if (to && (profile->grey || space == cmsSigRgbData))
-        profile->transform = cmsCreateTransformTHR(
-            profile->context, from, profile->grey ? TYPE_GRAY_FLT : TYPE_RGB_FLT, to, TYPE_RGB_FLT,
-            INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE);
-    if (from)
-        cmsCloseProfile(from);
-    if (to)
-        cmsCloseProfile(to);
-    return profile->transform != NULL;
 }
 
 // Compares colours over the whole cube, whatever the profile is called.
@@ -74,39 +50,41 @@ static bool is_srgb(const struct orl_profile *profile)
     return true;
 }
 
+// Takes `from`; NULL: it could not be made. unusable: said of one that cannot be used. exact: a profile near sRGB counts, too
+static struct orl_profile *create(const struct orl_log *log, const char *path, cmsHPROFILE from,
+                                  const char *unusable, bool exact)
+{
+    cmsHPROFILE to = make_rgb(&orl_primaries_rec709, 1);
+    cmsColorSpaceSignature space = from ? cmsGetColorSpace(from) : cmsSigLabData;
+    struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
+    if (profile)
+        profile->grey = space == cmsSigGrayData;
+    if (profile && to && (profile->grey || space == cmsSigRgbData))
+        profile->transform = cmsCreateTransform(from, profile->grey ? TYPE_GRAY_FLT : TYPE_RGB_FLT, to, TYPE_RGB_FLT,
+                                                INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE);
+    if (from)
+        cmsCloseProfile(from);
+    if (to)
+        cmsCloseProfile(to);
+    if (profile && !profile->transform)
+        orl_logf(log, ORL_LOG_WARNING, "%s: its %s", path, unusable);
+    if (profile && (!profile->transform || (!exact && is_srgb(profile))))
+        orl_profile_destroy(&profile);
+    return profile;
+}
+
 struct orl_profile *orl_profile_create(const struct orl_log *log, const char *path,
                                        const void *icc, size_t size)
 {
-    struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
-    if (!profile)
-        return NULL;
-    profile->context = cmsCreateContext(NULL, NULL); // without a handler messages are dropped
-    bool usable = profile->context && size <= UINT32_MAX &&
-                  make_transform(profile, cmsOpenProfileFromMemTHR(profile->context, icc,
-                                                                   (cmsUInt32Number)size));
-    if (!usable)
-        orl_logf(log, ORL_LOG_WARNING, "%s: its colour profile cannot be used; taken as sRGB",
-                 path);
-    if (!usable || is_srgb(profile))
-        orl_profile_destroy(&profile);
-    return profile;
+    cmsHPROFILE from = size <= UINT32_MAX ? cmsOpenProfileFromMem(icc, (cmsUInt32Number)size) : NULL;
+    return create(log, path, from, "colour profile cannot be used; taken as sRGB", false);
 }
 
 struct orl_profile *orl_profile_create_rgb(const struct orl_log *log, const char *path,
                                            const struct orl_primaries *primaries, double gamma)
 {
-    struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
-    if (!profile)
-        return NULL;
-    profile->context = cmsCreateContext(NULL, NULL);
-    bool usable = profile->context &&
-                  make_transform(profile, make_rgb(profile->context, primaries, gamma));
-    if (!usable)
-        orl_logf(log, ORL_LOG_WARNING, "%s: its primaries cannot be used; taken as those of sRGB",
-                 path);
-    if (!usable || (!gamma && is_srgb(profile)))
-        orl_profile_destroy(&profile);
-    return profile;
+    return create(log, path, make_rgb(primaries, gamma),
+                  "primaries cannot be used; taken as those of sRGB", gamma > 0);
 }
 
 void orl_profile_destroy(struct orl_profile **handle)
@@ -116,8 +94,6 @@ void orl_profile_destroy(struct orl_profile **handle)
         return;
     if (profile->transform)
         cmsDeleteTransform(profile->transform);
-    if (profile->context)
-        cmsDeleteContext(profile->context);
     free(profile);
     *handle = NULL;
 }
