@@ -66,39 +66,29 @@ static enum orl_result open_heif(const struct orl_log *log, const char *path,
 
 // --- EXIF ---
 
-// The block is stored behind four bytes that say how far on the TIFF data begins.
-static enum orl_result decode_exif(const struct heif_file *file, const uint8_t *block, size_t size,
-                                   struct orl_exif *exif)
-{
-    static const uint8_t head[6] = "Exif\0";
-    size_t start = size < 4 ? size
-                            : 4 + ((size_t)block[0] << 24 | (size_t)block[1] << 16 |
-                                   (size_t)block[2] << 8 | (size_t)block[3]);
-    if (start >= size)
-        return ORL_OK;
-    uint8_t *data = orl_array(file->log, sizeof head + size - start, 1);
-    ORL_TRY_MEMORY(data);
-    memcpy(data, head, sizeof head);
-    memcpy(data + sizeof head, block + start, size - start);
-    enum orl_result result = orl_exif_decode(file->log, file->path, data,
-                                             sizeof head + size - start, exif);
-    exif->orientation = 1; // the pixels are turned already
-    free(data);
-    return result;
-}
-
+// Four bytes ahead of the block say how far on the TIFF data begins.
 static enum orl_result read_exif(const struct heif_file *file, struct orl_exif *exif)
 {
+    static const uint8_t head[6] = "Exif\0";
     heif_item_id id;
     if (heif_image_handle_get_list_of_metadata_block_IDs(file->picture, "Exif", &id, 1) < 1)
         return ORL_OK;
     size_t size = heif_image_handle_get_metadata_size(file->picture, id);
-    uint8_t *block = orl_array(file->log, size + 1, 1);
-    ORL_TRY_MEMORY(block);
+    uint8_t *room = orl_array(file->log, sizeof head + size, 1);
+    ORL_TRY_MEMORY(room);
+    uint8_t *block = room + sizeof head;
     enum orl_result result =
         check(file, heif_image_handle_get_metadata(file->picture, id, block));
-    ORL_THEN(result, decode_exif(file, block, size, exif));
-    free(block);
+    size_t start = size < 4 ? size
+                            : 4 + ((size_t)block[0] << 24 | (size_t)block[1] << 16 |
+                                   (size_t)block[2] << 8 | (size_t)block[3]);
+    if (result == ORL_OK && start < size) {
+        uint8_t *data = block + start - sizeof head; // over what stands ahead of the TIFF data
+        memcpy(data, head, sizeof head);
+        result = orl_exif_decode(file->log, file->path, data, sizeof head + size - start, exif);
+        exif->orientation = 1; // the pixels are turned already
+    }
+    free(room);
     return result;
 }
 

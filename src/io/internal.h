@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "core/memory.h"
 #include "io/picture.h"
 
 // Larger pictures are refused. Photographs are smaller, and a few hostile bytes must not
@@ -28,14 +29,10 @@ struct orl_primaries {
 extern const struct orl_primaries orl_primaries_rec709; // sRGB's, too
 
 // The header of a picture, read from a stream at its start. exif: the EXIF block ("Exif\0\0" and
-// TIFF data), released with free(); NULL when the file has none before its pixels. The same of
-// icc, a colour profile.
+// TIFF data), of no bytes when the file has none before its pixels. The same of icc, a colour profile.
 struct orl_picture_header {
-    int width, height;
-    uint8_t *exif, *icc;
-    size_t exif_size, icc_size;
-    int bits; // of a sample
-    bool panorama, gain_map;
+    struct orl_picture_info info; // but for `profiled`, which gamma, primaries, icc and exif tell
+    struct orl_bytes exif, icc;
     double gamma; // PNG: samples are light to this power; 0: they have sRGB's curve
     struct orl_primaries primaries; // PNG; all 0: sRGB's
 };

@@ -10,7 +10,6 @@
 #include <jerror.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "io/internal.h"
 
 enum {
@@ -127,22 +126,18 @@ static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, 
     jpeg_stdio_src(info, stream);
     jpeg_read_header(info, TRUE);
     ORL_TRY(orl_picture_check_size(job->log, job->path, info->image_width, info->image_height));
-    header->width = (int)info->image_width;
-    header->height = (int)info->image_height;
-    header->bits = info->data_precision;
+    header->info = (struct orl_picture_info){.width = (int)info->image_width, .height = (int)info->image_height,
+                                             .bits = info->data_precision};
     for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
-        header->panorama |= is_xmp(marker) && orl_xmp_tells_panorama(marker->data, marker->data_length);
-        header->gain_map |= is_gain_map(marker);
-        if (!is_exif(marker) || header->exif)
-            continue;
-        header->exif = orl_array(job->log, marker->data_length, 1);
-        ORL_TRY_MEMORY(header->exif);
-        memcpy(header->exif, marker->data, marker->data_length);
-        header->exif_size = marker->data_length;
+        header->info.panorama |= is_xmp(marker) && orl_xmp_tells_panorama(marker->data, marker->data_length);
+        header->info.gain_map |= is_gain_map(marker);
+        if (is_exif(marker) && !header->exif.size)
+            ORL_TRY(orl_bytes_add(job->log, &header->exif, marker->data, marker->data_length));
     }
-    unsigned icc_size = 0;
-    if (jpeg_read_icc_profile(info, &header->icc, &icc_size))
-        header->icc_size = icc_size;
+    JOCTET *icc;
+    unsigned icc_size;
+    if (jpeg_read_icc_profile(info, &icc, &icc_size))
+        header->icc = (struct orl_bytes){.data = (char *)icc, .size = icc_size};
     return ORL_OK;
 }
 

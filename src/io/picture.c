@@ -52,12 +52,6 @@ static enum format format_of(const char *path, const uint8_t *data, size_t size)
     return may_be_raw && size && orl_picture_is_raw(path) ? FORMAT_RAW : format;
 }
 
-static enum orl_result fail_unknown(const struct orl_log *log, const char *path)
-{
-    return orl_fail(log, ORL_ERR_FORMAT, "%s: not a picture of a known kind "
-                    "(JPEG, PNG, PNM, TIFF, EXR, HEIC, AVIF, RAW)", path);
-}
-
 enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
                                        uint64_t width, uint64_t height)
 {
@@ -97,7 +91,17 @@ static enum orl_result open_file(const struct orl_log *log, const char *path, FI
     size_t got = fread(magic, 1, sizeof magic, *stream);
     rewind(*stream);
     *format = format_of(path, magic, got);
-    return ORL_OK;
+    if (*format != FORMAT_UNKNOWN)
+        return ORL_OK;
+    fclose(*stream);
+    return orl_fail(log, ORL_ERR_FORMAT, "%s: not a picture of a known kind "
+                    "(JPEG, PNG, PNM, TIFF, EXR, HEIC, AVIF, RAW)", path);
+}
+
+static enum orl_result decode_exif(const struct orl_log *log, const char *path,
+                                   const struct orl_picture_header *header, struct orl_exif *exif)
+{
+    return orl_exif_decode(log, path, (const uint8_t *)header->exif.data, header->exif.size, exif);
 }
 
 // NULL: the colours are taken as sRGB.
@@ -110,14 +114,12 @@ static struct orl_profile *make_profile(const struct orl_log *log, const char *p
     const double adobe_gamma = 563.0 / 256;
     struct orl_exif exif = {0};
     bool told = header->primaries.white[1] > 0;
-    if (header->icc)
-        return orl_profile_create(log, path, header->icc, header->icc_size);
+    if (header->icc.size)
+        return orl_profile_create(log, path, header->icc.data, header->icc.size);
     if (header->gamma > 0 || told)
         return orl_profile_create_rgb(log, path, told ? &header->primaries : &orl_primaries_rec709,
                                       header->gamma > 0 ? 1 / header->gamma : 0);
-    if (!header->exif ||
-        orl_exif_decode(NULL, path, header->exif, header->exif_size, &exif) != ORL_OK ||
-        !exif.adobe_rgb)
+    if (!header->exif.size || decode_exif(NULL, path, header, &exif) != ORL_OK || !exif.adobe_rgb)
         return NULL;
     return orl_profile_create_rgb(log, path, &adobe, adobe_gamma);
 }
@@ -137,18 +139,14 @@ static enum orl_result read_stream_header(const struct orl_log *log, const char 
         format == FORMAT_JPEG  ? orl_jpeg_read_header(log, path, stream, &header)
         : format == FORMAT_PNG ? orl_png_read_header(log, path, stream, &header)
                                : orl_pnm_read_header(log, path, stream, &header);
-    if (result == ORL_OK)
-        *info = (struct orl_picture_info){.width = header.width, .height = header.height,
-                                          .bits = header.bits};
     struct orl_profile *profile = result == ORL_OK ? make_profile(NULL, path, &header) : NULL;
-    info->panorama = header.panorama;
-    info->gain_map = header.gain_map;
+    *info = header.info;
     info->profiled = profile != NULL;
     orl_profile_destroy(&profile);
-    if (result == ORL_OK && header.exif)
-        result = orl_exif_decode(log, path, header.exif, header.exif_size, exif);
-    free(header.exif);
-    free(header.icc);
+    if (result == ORL_OK && header.exif.size)
+        result = decode_exif(log, path, &header, exif);
+    free(header.exif.data);
+    free(header.icc.data);
     return result;
 }
 
@@ -178,9 +176,8 @@ static enum orl_result read_header(const struct orl_log *log, const char *path,
     FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
     ORL_TRY(open_file(log, path, &stream, &format));
-    enum orl_result result = format == FORMAT_UNKNOWN  ? fail_unknown(log, path)
-                             : by_path[format].inspect ? by_path[format].inspect(log, path, info, exif)
-                                                       : read_stream_header(log, path, stream, format, info, exif);
+    enum orl_result result = by_path[format].inspect ? by_path[format].inspect(log, path, info, exif)
+                                                     : read_stream_header(log, path, stream, format, info, exif);
     info->panorama |= exif->panorama;
     fclose(stream);
     return result;
@@ -240,20 +237,21 @@ static enum orl_result read_exr(const struct orl_log *log, const char *path,
     return result;
 }
 
-// The colour profile of a JPEG or PNG file, read from its stream; NULL: the colours are taken as sRGB.
-// Damage is left to the decoder to find.
-static struct orl_profile *find_profile(const struct orl_log *log, const char *path, FILE *stream,
-                                        enum format format)
+// What a file is, and the colour profile of JPEG and PNG; NULL: the colours are taken as sRGB. Damage is left
+// to the decoder to find. profile_log: is told of a profile that cannot be used
+static enum orl_result look_at(const struct orl_log *log, const struct orl_log *profile_log, const char *path,
+                               enum format *format, struct orl_profile **profile)
 {
     struct orl_picture_header header = {0};
-    struct orl_profile *profile = NULL;
-    if (format == FORMAT_JPEG && orl_jpeg_read_header(NULL, path, stream, &header) == ORL_OK)
-        profile = make_profile(log, path, &header);
-    if (format == FORMAT_PNG && orl_png_read_header(NULL, path, stream, &header) == ORL_OK)
-        profile = make_profile(log, path, &header);
-    free(header.exif);
-    free(header.icc);
-    return profile;
+    FILE *stream = NULL;
+    ORL_TRY(open_file(log, path, &stream, format));
+    bool read = (*format == FORMAT_JPEG && orl_jpeg_read_header(NULL, path, stream, &header) == ORL_OK) ||
+                (*format == FORMAT_PNG && orl_png_read_header(NULL, path, stream, &header) == ORL_OK);
+    *profile = read ? make_profile(profile_log, path, &header) : NULL;
+    fclose(stream);
+    free(header.exif.data);
+    free(header.icc.data);
+    return ORL_OK;
 }
 
 // Decodes the samples of a JPEG, PNG or PNM file as stored. channels: of JPEG; kind: of PNG
@@ -301,13 +299,10 @@ enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *p
                                         struct orl_image *image)
 {
     memset(image, 0, sizeof *image);
-    FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
-    ORL_TRY(open_file(log, path, &stream, &format));
-    struct orl_profile *profile = find_profile(log, path, stream, format);
-    fclose(stream);
-    enum orl_result result = format == FORMAT_UNKNOWN ? fail_unknown(log, path)
-                                                      : decode_linear(log, path, format, profile, image);
+    struct orl_profile *profile = NULL;
+    ORL_TRY(look_at(log, log, path, &format, &profile));
+    enum orl_result result = decode_linear(log, path, format, profile, image);
     orl_profile_destroy(&profile);
     if (result != ORL_OK)
         orl_image_finish(image);
@@ -345,14 +340,12 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     memset(image, 0, sizeof *image);
     ORL_REQUIRE(log, channels == 1 || channels == 3);
     struct orl_image linear = {0};
-    FILE *stream = NULL;
     enum format format = FORMAT_UNKNOWN;
-    ORL_TRY(open_file(log, path, &stream, &format));
-    struct orl_profile *profile = find_profile(NULL, path, stream, format);
+    struct orl_profile *profile = NULL;
+    ORL_TRY(look_at(log, NULL, path, &format, &profile));
     bool eight = !profile && (format == FORMAT_JPEG || format == FORMAT_PNG ||
                               format == FORMAT_PNM);
     orl_profile_destroy(&profile);
-    fclose(stream);
     enum orl_result result = eight ? decode_file(log, path, format, channels, ORL_PNG_RGB, image)
                                    : orl_picture_read_linear(log, path, &linear);
     if (result == ORL_OK && linear.data)

@@ -7,7 +7,6 @@
 #include <png.h>
 
 #include "core/file.h"
-#include "core/memory.h"
 #include "io/internal.h"
 
 // Of one allocation of libpng. A row of ORL_IMAGE_MAX_SIDE pixels takes 512 KiB.
@@ -143,23 +142,19 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     enum orl_result result = ORL_OK;
     bool by_code = read_code_points(job, header, &result);
     ORL_TRY(result);
-    header->width = (int)width;
-    header->height = (int)height;
-    header->bits = png_get_bit_depth(job->png, job->info);
+    header->info = (struct orl_picture_info){.width = (int)width, .height = (int)height,
+                                             .bits = png_get_bit_depth(job->png, job->info)};
     png_textp texts;
     int text_count = png_get_text(job->png, job->info, &texts, NULL);
     for (int i = 0; i < text_count; i++)
-        header->panorama |= strcmp(texts[i].key, "XML:com.adobe.xmp") == 0 &&
-                            orl_xmp_tells_panorama(texts[i].text, strlen(texts[i].text));
+        header->info.panorama |= strcmp(texts[i].key, "XML:com.adobe.xmp") == 0 &&
+                                 orl_xmp_tells_panorama(texts[i].text, strlen(texts[i].text));
 #ifdef PNG_eXIf_SUPPORTED
     png_uint_32 size = 0;
     png_bytep exif = NULL;
     if (png_get_eXIf_1(job->png, job->info, &size, &exif) && size) {
-        header->exif = orl_array(job->log, (size_t)size + 6, 1);
-        ORL_TRY_MEMORY(header->exif);
-        memcpy(header->exif, "Exif\0", 6);
-        memcpy(header->exif + 6, exif, size);
-        header->exif_size = (size_t)size + 6;
+        ORL_TRY(orl_bytes_add(job->log, &header->exif, "Exif\0", 6));
+        ORL_TRY(orl_bytes_add(job->log, &header->exif, exif, size));
     }
 #endif
     png_charp name;
@@ -168,15 +163,10 @@ static enum orl_result read_header(struct png_job *job, FILE *stream,
     png_uint_32 icc_size = 0;
     if (by_code)
         return ORL_OK;
-    if (png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size) && icc_size) {
-        header->icc = orl_array(job->log, icc_size, 1);
-        ORL_TRY_MEMORY(header->icc);
-        memcpy(header->icc, icc, icc_size);
-        header->icc_size = icc_size;
-    } else {
-        header->gamma = gamma_of(job);
-        read_primaries(job, &header->primaries);
-    }
+    if (png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size) && icc_size)
+        return orl_bytes_add(job->log, &header->icc, icc, icc_size);
+    header->gamma = gamma_of(job);
+    read_primaries(job, &header->primaries);
     return ORL_OK;
 }
 

@@ -58,8 +58,7 @@ enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path,
     if (!orl_pnm_is(data, size))
         return orl_fail(log, ORL_ERR_FORMAT, "%s: byte 0: not a binary PNM file", path);
     ORL_TRY(parse_header(log, path, data, size, &pnm));
-    *header = (struct orl_picture_header){.width = (int)pnm.width, .height = (int)pnm.height,
-                                          .bits = 8};
+    header->info = (struct orl_picture_info){.width = (int)pnm.width, .height = (int)pnm.height, .bits = 8};
     return ORL_OK;
 }
 
