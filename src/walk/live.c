@@ -24,18 +24,10 @@ enum {
     LATENCIES = 1 << 16,
 };
 
-struct camera {
-    size_t photo; // of the scene
-    struct orl_background background;
-};
-
 struct live {
     const struct orl_log *log;
     struct orl_scene *scene; // the server's thread alone changes it
-    struct camera *cameras;
-    size_t camera_count;
-    char **from, **folders; // owned: DIR/NAME of each camera, a folder or a pipe; where its pictures are
-    struct orl_live_cameras pictures;
+    struct orl_live_cameras cameras; // named DIR/NAME, a folder or a pipe
     struct orl_live_pipes *pipes; // NULL: cameras write into folders
     char *dir; // owned: frames/NNNNN/ of the time steps that are kept
     pthread_t thread;
@@ -62,7 +54,7 @@ static double clock_s(void)
 
 // --- one time step ---
 
-static enum orl_result write_picture(struct live *live, const struct camera *camera, int number,
+static enum orl_result write_picture(struct live *live, const struct orl_live_camera *camera, int number,
                                      const char *folder, const char *ending, const char *copied,
                                      const struct orl_image *image)
 {
@@ -72,7 +64,7 @@ static enum orl_result write_picture(struct live *live, const struct camera *cam
     return image ? orl_png_write(live->log, path, image) : orl_file_copy(live->log, copied, path);
 }
 
-static enum orl_result take_picture(struct live *live, const struct camera *camera, int number,
+static enum orl_result take_picture(struct live *live, const struct orl_live_camera *camera, int number,
                                     const char *path)
 {
     const struct orl_difference_params params = {ORL_DIFFERENCE_DEFAULTS};
@@ -115,10 +107,10 @@ static void make_time_step(struct live *live, char *const *paths)
     enum orl_result result = ORL_OK;
     double since = 0;
     int number = (int)(live->steps % NUMBERS);
-    for (size_t i = 0; result == ORL_OK && i < live->camera_count; i++) {
+    for (size_t i = 0; result == ORL_OK && i < live->cameras.count; i++) {
         struct stat status;
         result = stat(paths[i], &status) == 0
-                     ? take_picture(live, &live->cameras[i], number, paths[i])
+                     ? take_picture(live, &live->cameras.cameras[i], number, paths[i])
                      : orl_fail(live->log, ORL_ERR_NOT_FOUND, "%s: %s", paths[i], strerror(errno));
         if (result == ORL_OK)
             since = fmax(since, (double)status.st_mtim.tv_sec + 1e-9 * (double)status.st_mtim.tv_nsec);
@@ -134,15 +126,15 @@ static void make_time_step(struct live *live, char *const *paths)
 static void *watch(void *priv)
 {
     struct live *live = priv;
-    char **paths = orl_array(live->log, live->camera_count, sizeof *paths);
+    char **paths = orl_array(live->log, live->cameras.count, sizeof *paths);
     enum orl_result result = paths ? ORL_OK : ORL_ERR_MEMORY;
     while (result == ORL_OK && !atomic_load(&live->ends)) {
-        result = orl_live_cameras_look(&live->pictures, clock_s(), paths);
+        result = orl_live_cameras_look(&live->cameras, clock_s(), paths);
         if (result == ORL_OK && paths[0])
             make_time_step(live, paths);
         else
             nanosleep(&(struct timespec){0, POLL_MS * 1000000}, NULL);
-        for (size_t i = 0; i < live->camera_count; i++)
+        for (size_t i = 0; i < live->cameras.count; i++)
             free(paths[i]);
     }
     free(paths);
@@ -151,20 +143,25 @@ static void *watch(void *priv)
 
 // --- start and end ---
 
+// Finds where a photograph's pictures come from.
 static enum orl_result add_camera(struct live *live, const char *dir, size_t photo)
 {
     const struct orl_photo *p = &live->scene->photos[photo];
-    struct camera *camera = &live->cameras[live->camera_count];
-    char **from = &live->from[live->camera_count++];
+    size_t number = live->cameras.count;
     struct orl_image picture = {0};
     const struct orl_file_path path = orl_scene_file(live->scene, photo, ORL_FILE_BACKGROUND);
-    *camera = (struct camera){.photo = photo};
-    *from = orl_format(live->log, "%s/%.*s", dir, (int)orl_path_stem(p->name), p->name);
-    ORL_TRY_MEMORY(*from);
+    const char *from = ORL_PATH(dir, "%.*s", (int)orl_path_stem(p->name), p->name);
+    bool is_pipe = orl_path_is_pipe(from);
     if (!p->masked || !orl_path_is_file(path.text))
         return orl_fail(live->log, ORL_ERR_DATA, "%s: %s has no silhouette or no picture of the empty "
                         "place, which --live needs; import the cameras with --background",
                         live->scene->dir, p->name);
+    if (number > 0 && is_pipe != live->cameras.removes) // pipes have time stamps of their own
+        return orl_fail(live->log, ORL_ERR_DATA, "%s: some cameras have pipes, others do not", from);
+    live->cameras.removes = is_pipe;
+    ORL_TRY(orl_live_cameras_add(&live->cameras, from, is_pipe ? ORL_PATH(live->dir, "pipes/%zu", number) : from));
+    struct orl_live_camera *camera = &live->cameras.cameras[number];
+    camera->photo = photo;
     ORL_TRY(orl_picture_read(live->log, path.text, 3, &picture));
     enum orl_result result = orl_background_add(live->log, &camera->background, &picture);
     orl_image_finish(&picture);
@@ -181,31 +178,10 @@ static enum orl_result add_cameras(struct live *live, const char *dir)
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
         if (!scene->photos[i].test)
             result = add_camera(live, dir, i);
-    if (result == ORL_OK && !live->camera_count)
+    if (result == ORL_OK && !live->cameras.count)
         result = orl_fail(live->log, ORL_ERR_DATA, "%s: all cameras are held out", scene->dir);
-    return result;
-}
-
-// Finds where the pictures come from, and has pipes read.
-static enum orl_result open_cameras(struct live *live)
-{
-    const char *const *from = (const char *const *)live->from;
-    const char *const *folders = (const char *const *)live->folders;
-    enum orl_result result = ORL_OK;
-    size_t count = live->camera_count, pipes = 0;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        bool is_pipe = orl_path_is_pipe(from[i]);
-        live->folders[i] = is_pipe ? orl_format(live->log, "%s/pipes/%zu", live->dir, i)
-                                   : orl_strdup(live->log, from[i]);
-        if (!live->folders[i])
-            result = ORL_ERR_MEMORY;
-        if (i > 0 && is_pipe != (pipes > 0)) // pipes have time stamps of their own
-            result = orl_fail(live->log, ORL_ERR_DATA, "%s: some cameras have pipes, others do not", from[i]);
-        pipes += is_pipe;
-    }
-    if (result == ORL_OK && pipes)
-        result = orl_live_pipes_start(live->log, from, folders, count, &live->pipes);
-    ORL_THEN(result, orl_live_cameras_init(live->log, from, folders, count, pipes > 0, &live->pictures));
+    if (result == ORL_OK && live->cameras.removes)
+        result = orl_live_pipes_start(&live->cameras, &live->pipes);
     return result;
 }
 
@@ -215,18 +191,12 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
     struct live *live = orl_array(log, 1, sizeof *live);
     *out = live;
     ORL_TRY_MEMORY(live);
-    *live = (struct live){.log = log, .scene = scene, .ready = -1, .taken = -1};
+    *live = (struct live){.log = log, .scene = scene, .cameras = {.log = log}, .ready = -1, .taken = -1};
     pthread_mutex_init(&live->lock, NULL);
-    live->cameras = orl_array(log, scene->photo_count, sizeof *live->cameras);
-    live->from = orl_array(log, scene->photo_count, sizeof *live->from);
-    live->folders = orl_array(log, scene->photo_count, sizeof *live->folders);
     live->latency_ms = orl_array(log, LATENCIES, sizeof *live->latency_ms);
-    bool room = live->cameras && live->from && live->folders && live->latency_ms;
-    enum orl_result result = room ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = live->latency_ms ? orl_dir_make_temporary(log, "live", &live->dir) : ORL_ERR_MEMORY;
     ORL_THEN(result, add_cameras(live, dir));
-    ORL_THEN(result, orl_dir_make_temporary(log, "live", &live->dir));
     scene->time_steps_dir = live->dir;
-    ORL_THEN(result, open_cameras(live));
     if (result == ORL_OK)
         live->has_thread = pthread_create(&live->thread, NULL, watch, live) == 0;
     if (result == ORL_OK && !live->has_thread)
@@ -245,11 +215,11 @@ static void report(const struct live *live)
              "after their last picture", live->steps,
              seconds > 0 ? (double)(live->steps - 1) / seconds : 0, live->drawn,
              count ? (double)live->latency_ms[count / 2] : 0);
-    for (size_t i = 0; i < live->camera_count; i++) {
-        const struct orl_live_camera *camera = &live->pictures.cameras[i];
+    for (size_t i = 0; i < live->cameras.count; i++) {
+        const struct orl_live_camera *camera = &live->cameras.cameras[i];
         if (camera->missing || camera->late)
             orl_logf(live->log, ORL_LOG_INFO, "live: %s lacked %zu pictures that others had, and was waited "
-                     "for %zu times", live->from[i], camera->missing, camera->late);
+                     "for %zu times", camera->name, camera->missing, camera->late);
     }
 }
 
@@ -264,19 +234,11 @@ void orl_live_stop(struct live **handle)
         report(live);
     }
     orl_live_pipes_stop(&live->pipes);
-    orl_live_cameras_finish(&live->pictures);
+    orl_live_cameras_finish(&live->cameras);
     if (live->dir && orl_dir_remove(live->log, live->dir) != ORL_OK)
         orl_logf(live->log, ORL_LOG_WARNING, "%s: stays", live->dir);
     live->scene->time_steps_dir = NULL;
-    for (size_t i = 0; i < live->camera_count; i++) {
-        free(live->from[i]);
-        free(live->folders[i]);
-        orl_background_finish(&live->cameras[i].background);
-    }
     pthread_mutex_destroy(&live->lock);
-    free(live->cameras);
-    free(live->from);
-    free(live->folders);
     free(live->latency_ms);
     free(live->dir);
     free(live);

@@ -13,16 +13,13 @@
 static const double late_s = 1;
 enum { DIGITS_MAX = 18 }; // of 64 bits
 
-enum orl_result orl_live_cameras_init(const struct orl_log *log, const char *const *names,
-                                      const char *const *folders, size_t count, bool removes,
-                                      struct orl_live_cameras *cameras)
+enum orl_result orl_live_cameras_add(struct orl_live_cameras *cameras, const char *name, const char *folder)
 {
-    *cameras = (struct orl_live_cameras){.log = log, .count = count, .removes = removes};
-    cameras->cameras = orl_array(log, count, sizeof *cameras->cameras);
-    for (size_t i = 0; cameras->cameras && i < count; i++)
-        cameras->cameras[i] = (struct orl_live_camera){
-            .name = names[i], .folder = folders[i], .last = -1, .newest = -1};
-    return cameras->cameras ? ORL_OK : ORL_ERR_MEMORY;
+    ORL_TRY(ORL_GROW(cameras->log, cameras->cameras, cameras->capacity, cameras->count));
+    struct orl_live_camera *camera = &cameras->cameras[cameras->count++];
+    *camera = (struct orl_live_camera){.name = orl_strdup(cameras->log, name),
+                                       .folder = orl_strdup(cameras->log, folder), .last = -1, .newest = -1};
+    return camera->name && camera->folder ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 static void forget_pictures(struct orl_live_camera *camera)
@@ -34,9 +31,13 @@ static void forget_pictures(struct orl_live_camera *camera)
 
 void orl_live_cameras_finish(struct orl_live_cameras *cameras)
 {
-    for (size_t i = 0; cameras->cameras && i < cameras->count; i++) {
-        forget_pictures(&cameras->cameras[i]);
-        free(cameras->cameras[i].pictures);
+    for (size_t i = 0; i < cameras->count; i++) {
+        struct orl_live_camera *camera = &cameras->cameras[i];
+        forget_pictures(camera);
+        free(camera->pictures);
+        free(camera->name);
+        free(camera->folder);
+        orl_background_finish(&camera->background);
     }
     free(cameras->cameras);
     *cameras = (struct orl_live_cameras){.count = 0};

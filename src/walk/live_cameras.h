@@ -2,7 +2,7 @@
 #ifndef ORL_WALK_LIVE_CAMERAS_H
 #define ORL_WALK_LIVE_CAMERAS_H
 
-#include "oriel/log.h"
+#include "scene/silhouette.h"
 
 enum { ORL_LIVE_INTERVALS = 15 };
 
@@ -12,7 +12,9 @@ struct orl_live_picture {
 };
 
 struct orl_live_camera {
-    const char *name, *folder; // what it is called in messages; where its pictures are; not owned
+    char *name, *folder;              // owned: what it is called in messages; where its pictures are
+    size_t photo;                     // of the scene: its own
+    struct orl_background background; // owned: what it shows of the empty place
     // Pictures that are newer than `last`, by their numbers.
     struct orl_live_picture *pictures;
     size_t count, capacity;
@@ -29,15 +31,14 @@ struct orl_live_camera {
 struct orl_live_cameras {
     const struct orl_log *log;
     struct orl_live_camera *cameras;
-    size_t count;
+    size_t count, capacity;
     bool removes; // pictures that have been decided upon
 };
 
-// Folders may appear later. A picture's number is the one that ends its name before the ending; names
-// that begin with a dot are of files that are still being written.
-enum orl_result orl_live_cameras_init(const struct orl_log *log, const char *const *names,
-                                      const char *const *folders, size_t count, bool removes,
-                                      struct orl_live_cameras *cameras) ORL_CHECK_RESULT;
+// Adds a camera to a struct that was zero but for its log. Folders may appear later. A picture's number is the one that
+// ends its name before the ending; names that begin with a dot are of files that are still being written.
+enum orl_result orl_live_cameras_add(struct orl_live_cameras *cameras, const char *name,
+                                     const char *folder) ORL_CHECK_RESULT;
 void orl_live_cameras_finish(struct orl_live_cameras *cameras);
 
 // Looks for new pictures. Those that are less than half an interval between a camera's pictures apart

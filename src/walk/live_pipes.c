@@ -53,7 +53,7 @@ static enum orl_result write_picture(const struct orl_log *log, struct pipe *pip
     bool whole = file && fwrite(bytes, 1, count, file) == count;
     if (file && fclose(file) != 0)
         whole = false;
-    return whole && rename(part, path) == 0 ? ORL_OK : orl_fail(log, ORL_ERR_IO, "%s: %s", path, strerror(errno));
+    return whole && rename(part, path) == 0 ? ORL_OK : orl_file_failed(log, path);
 }
 
 // Writes the pictures that are whole.
@@ -88,7 +88,7 @@ static enum orl_result read_pipe(struct orl_live_pipes *pipes, struct pipe *pipe
                                       pipe->count + PIPE_SIZE, 1);
     ssize_t got = result == ORL_OK ? read(pipe->fd, pipe->bytes + pipe->count, PIPE_SIZE) : -1;
     if (result == ORL_OK && got < 0 && errno != EAGAIN && errno != EINTR)
-        result = orl_fail(pipes->log, ORL_ERR_IO, "%s: %s", pipe->path, strerror(errno));
+        result = orl_file_failed(pipes->log, pipe->path);
     if (got == 0)
         pipe->count = 0; // no writer: the next one begins with a new picture
     if (got <= 0)
@@ -117,34 +117,32 @@ static void *read_pipes(void *priv)
     return NULL;
 }
 
-enum orl_result orl_live_pipes_start(const struct orl_log *log, const char *const *paths,
-                                     const char *const *folders, size_t count,
-                                     struct orl_live_pipes **pipes_out)
+enum orl_result orl_live_pipes_start(const struct orl_live_cameras *cameras, struct orl_live_pipes **pipes_out)
 {
+    const struct orl_log *log = cameras->log;
     struct orl_live_pipes *pipes = orl_array(log, 1, sizeof *pipes);
     *pipes_out = pipes;
     ORL_TRY_MEMORY(pipes);
     pipes->log = log;
     pipes->start_s = orl_time_s();
-    pipes->pipes = orl_array(log, count, sizeof *pipes->pipes);
+    pipes->pipes = orl_array(log, cameras->count, sizeof *pipes->pipes);
     enum orl_result result = pipes->pipes ? ORL_OK : ORL_ERR_MEMORY;
-    for (; result == ORL_OK && pipes->count < count; pipes->count++) {
-        size_t i = pipes->count;
-        pipes->pipes[i] = (struct pipe){.path = paths[i], .folder = folders[i], .last = -1, .fd = -1};
-        result = orl_dir_make(log, folders[i]);
-        if (result == ORL_OK)
-            pipes->pipes[i].fd = open(paths[i], O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-        if (result == ORL_OK && pipes->pipes[i].fd < 0)
-            result = orl_fail(log, ORL_ERR_IO, "%s: %s", paths[i], strerror(errno));
+    for (; result == ORL_OK && pipes->count < cameras->count; pipes->count++) {
+        const struct orl_live_camera *camera = &cameras->cameras[pipes->count];
+        struct pipe *pipe = &pipes->pipes[pipes->count];
+        *pipe = (struct pipe){.path = camera->name, .folder = camera->folder, .last = -1, .fd = -1};
+        result = orl_dir_make(log, pipe->folder);
+        if (result == ORL_OK && (pipe->fd = open(pipe->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC)) < 0)
+            result = orl_file_failed(log, pipe->path);
         // A writer that fills a pipe waits until it is read. When one program writes for all cameras in
         // turn, the pictures of a time step then begin too far apart to be paired. It may be refused.
         if (result == ORL_OK)
-            fcntl(pipes->pipes[i].fd, F_SETPIPE_SZ, PIPE_SIZE);
+            fcntl(pipe->fd, F_SETPIPE_SZ, PIPE_SIZE);
     }
     if (result == ORL_OK)
         pipes->has_thread = pthread_create(&pipes->thread, NULL, read_pipes, pipes) == 0;
     if (result == ORL_OK && !pipes->has_thread)
-        result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read %s", paths[0]);
+        result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read %s", pipes->pipes[0].path);
     if (result != ORL_OK)
         orl_live_pipes_stop(pipes_out);
     return result;

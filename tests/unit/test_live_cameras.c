@@ -19,13 +19,12 @@ static int set_up(void **state)
     struct set *set = calloc(1, sizeof *set);
     set->dir = test_dir_make();
     set->log = log_to(&set->said);
+    set->cameras = (struct orl_live_cameras){.log = &set->log, .removes = true};
     for (int i = 0; i < CAMERAS; i++) {
         set->folders[i] = orl_format(NULL, "%s/cam%02d", set->dir, i);
         assert_int_equal(orl_dir_make(NULL, set->folders[i]), ORL_OK);
+        assert_int_equal(orl_live_cameras_add(&set->cameras, set->folders[i], set->folders[i]), ORL_OK);
     }
-    assert_int_equal(orl_live_cameras_init(&set->log, (const char *const *)set->folders,
-                                           (const char *const *)set->folders, CAMERAS, true,
-                                           &set->cameras), ORL_OK);
     *state = set;
     return 0;
 }
