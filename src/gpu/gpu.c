@@ -12,25 +12,6 @@ static const char mesa_advice[] =
     "Oriel needs OpenGL 4.5 core through EGL; without a graphics card install Mesa's software "
     "renderer (Debian: libegl1 libgl1-mesa-dri)";
 
-// The ways to open a display, in the order in which they are tried.
-static EGLDisplay open_device_display(int index)
-{
-    EGLDeviceEXT devices[16];
-    EGLint count = 0;
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
-        !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base") ||
-        !eglQueryDevicesEXT((EGLint)ORL_COUNT(devices), devices, &count) || index >= count)
-        return EGL_NO_DISPLAY;
-    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[index], NULL);
-}
-
-static EGLDisplay open_surfaceless_display(void)
-{
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-        return EGL_NO_DISPLAY;
-    return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
-}
-
 // With robust access a shader that reads or writes outside of a buffer harms nobody, and with reset
 // notification a device that was reset says so. Drivers need not offer either.
 static EGLContext create_context(EGLDisplay display, EGLConfig config, bool debug)
@@ -64,30 +45,36 @@ static bool open_context(struct orl_gpu *gpu, EGLDisplay display, bool debug)
         return false;
     const EGLint config_attribs[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
                                      EGL_NONE};
-    if (eglBindAPI(EGL_OPENGL_API)) {
-        if (!eglChooseConfig(display, config_attribs, &config, 1, &config_count) || !config_count)
-            config = EGL_NO_CONFIG_KHR;
-        gpu->context = create_context(display, config, debug);
-        if (gpu->context != EGL_NO_CONTEXT &&
-            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context)) {
-            gpu->display = display;
-            gpu->current = true;
-            return true;
-        }
-        if (gpu->context != EGL_NO_CONTEXT)
-            eglDestroyContext(display, gpu->context);
-        gpu->context = EGL_NO_CONTEXT;
-    }
+    bool bound = eglBindAPI(EGL_OPENGL_API);
+    if (!bound || !eglChooseConfig(display, config_attribs, &config, 1, &config_count) || !config_count)
+        config = EGL_NO_CONFIG_KHR;
+    gpu->display = display;
+    gpu->context = bound ? create_context(display, config, debug) : EGL_NO_CONTEXT;
+    gpu->current = gpu->context != EGL_NO_CONTEXT &&
+                   eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context);
+    if (gpu->current)
+        return true;
+    if (gpu->context != EGL_NO_CONTEXT)
+        eglDestroyContext(display, gpu->context);
     eglTerminate(display);
     return false;
 }
 
+// By a device, else by Mesa's platform without surfaces.
 static bool open_any_context(struct orl_gpu *gpu, bool debug)
 {
-    for (int i = 0; i < 16; i++)
-        if (open_context(gpu, open_device_display(i), debug))
+    EGLDeviceEXT devices[16];
+    EGLint count = 0;
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
+        epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_base") &&
+        !eglQueryDevicesEXT((EGLint)ORL_COUNT(devices), devices, &count))
+        count = 0;
+    for (EGLint i = 0; i < count; i++)
+        if (open_context(gpu, eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL), debug))
             return true;
-    return open_context(gpu, open_surfaceless_display(), debug);
+    return epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless") &&
+           open_context(gpu, eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL),
+                        debug);
 }
 
 static void GLAPIENTRY on_debug(GLenum source, GLenum type, GLuint id, GLenum severity,
@@ -133,50 +120,46 @@ static enum orl_result check_address_space(const struct orl_log *log)
                     (unsigned long long)(left / mib), (unsigned long long)(need / mib));
 }
 
-enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_params *params,
-                               struct orl_gpu **out)
+static enum orl_result open_gpu(struct orl_gpu *gpu, const struct orl_gpu_params *params)
 {
-    *out = NULL;
-    struct orl_gpu *gpu = orl_array(log, 1, sizeof *gpu);
-    ORL_TRY_MEMORY(gpu);
-    enum orl_result result = ORL_OK;
-    gpu->log = log;
-    gpu->pass = -1;
-    gpu->display = EGL_NO_DISPLAY;
-    gpu->context = EGL_NO_CONTEXT;
-    if (params && params->shader_dir && !(gpu->shader_dir = orl_strdup(log, params->shader_dir))) {
-        result = ORL_ERR_MEMORY;
-        goto fail;
+    const struct orl_log *log = gpu->log;
+    if (params->shader_dir) {
+        gpu->shader_dir = orl_strdup(log, params->shader_dir);
+        ORL_TRY_MEMORY(gpu->shader_dir);
     }
-    if ((result = check_address_space(log)) != ORL_OK)
-        goto fail;
+    ORL_TRY(check_address_space(log));
     orl_mesa_cache_guard(log);
-    if (!open_any_context(gpu, params && params->debug)) {
-        result = orl_fail(log, ORL_ERR_GPU, "no usable OpenGL device (EGL error 0x%04x). %s",
-                          (unsigned)eglGetError(), mesa_advice);
-        goto fail;
-    }
-    if (epoxy_gl_version() < 45) {
-        result = orl_fail(log, ORL_ERR_GPU, "found OpenGL %s (%s). %s",
-                          (const char *)glGetString(GL_VERSION),
-                          (const char *)glGetString(GL_RENDERER), mesa_advice);
-        goto fail;
-    }
+    if (!open_any_context(gpu, params->debug))
+        return orl_fail(log, ORL_ERR_GPU, "no usable OpenGL device (EGL error 0x%04x). %s",
+                        (unsigned)eglGetError(), mesa_advice);
+    if (epoxy_gl_version() < 45)
+        return orl_fail(log, ORL_ERR_GPU, "found OpenGL %s (%s). %s", (const char *)glGetString(GL_VERSION),
+                        (const char *)glGetString(GL_RENDERER), mesa_advice);
     query_caps(&gpu->caps);
-    if (!params || !params->debug)
-        orl_program_cache_open(gpu, params ? params->cache_dir : NULL);
-    if (params && params->debug) {
+    if (params->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
         glDebugMessageCallback(on_debug, gpu);
+    } else {
+        orl_program_cache_open(gpu, params->cache_dir);
     }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     orl_logf(log, ORL_LOG_DEBUG, "device: %s, OpenGL %s", gpu->caps.renderer, gpu->caps.version);
-    *out = gpu;
     return ORL_OK;
-fail:
-    orl_gpu_destroy(&gpu);
+}
+
+enum orl_result orl_gpu_create(const struct orl_log *log, const struct orl_gpu_params *params,
+                               struct orl_gpu **out)
+{
+    static const struct orl_gpu_params usual = {0};
+    struct orl_gpu *gpu = *out = orl_array(log, 1, sizeof *gpu);
+    ORL_TRY_MEMORY(gpu);
+    gpu->log = log;
+    gpu->pass = -1;
+    enum orl_result result = open_gpu(gpu, params ? params : &usual);
+    if (result != ORL_OK)
+        orl_gpu_destroy(out);
     return result;
 }
 
@@ -227,18 +210,10 @@ static void lose(struct orl_gpu *gpu, const char *cause)
 
 static void check_lost(struct orl_gpu *gpu)
 {
-    switch (glGetGraphicsResetStatus()) {
-    case GL_NO_ERROR:
-        break;
-    case GL_GUILTY_CONTEXT_RESET:
-        lose(gpu, " for a fault of this frame, or since a pass took too long");
-        break;
-    case GL_INNOCENT_CONTEXT_RESET:
-        lose(gpu, " by another program");
-        break;
-    default:
-        lose(gpu, "");
-    }
+    GLenum status = glGetGraphicsResetStatus();
+    if (status != GL_NO_ERROR)
+        lose(gpu, status == GL_GUILTY_CONTEXT_RESET ? " for a fault of this frame, or since a pass took too long"
+                  : status == GL_INNOCENT_CONTEXT_RESET ? " by another program" : "");
 }
 
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where)

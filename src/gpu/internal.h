@@ -11,7 +11,7 @@ enum { ORL_PASSES_MAX = 64, ORL_QUERIES_MAX = 256, ORL_MEMORY_ROWS_MAX = 64,
        ORL_SHADER_FILES_MAX = 48 };
 
 struct pass_query {
-    GLuint begin, end;
+    GLuint ids[2]; // of its begin and end; 0: not created yet
     int pass;
     struct orl_pass_span *span; // in the trace; NULL: not traced
 };
@@ -39,8 +39,8 @@ struct orl_gpu {
     double pass_start_s;
     struct orl_pass_time passes[ORL_PASSES_MAX];
     size_t pass_count;
-    struct pass_query queries[ORL_QUERIES_MAX]; // query names are created on first use
-    size_t query_count;                         // pending queries
+    struct pass_query queries[ORL_QUERIES_MAX];
+    size_t query_count; // pending queries
     struct orl_pass_trace *trace;               // NULL: no recording
     double clock_offset_s; // added to the device's clock to get orl_time_s
 };

@@ -25,8 +25,8 @@ static void resolve_queries(struct orl_gpu *gpu)
 {
     for (size_t i = 0; i < gpu->query_count; i++) {
         GLuint64 begin = 0, end = 0;
-        glGetQueryObjectui64v(gpu->queries[i].begin, GL_QUERY_RESULT, &begin);
-        glGetQueryObjectui64v(gpu->queries[i].end, GL_QUERY_RESULT, &end);
+        glGetQueryObjectui64v(gpu->queries[i].ids[0], GL_QUERY_RESULT, &begin);
+        glGetQueryObjectui64v(gpu->queries[i].ids[1], GL_QUERY_RESULT, &end);
         gpu->passes[gpu->queries[i].pass].ms += 1e-6 * (double)(end - begin);
         if (gpu->queries[i].span) {
             gpu->queries[i].span->gpu_start_s = 1e-9 * (double)begin + gpu->clock_offset_s;
@@ -50,12 +50,10 @@ void orl_pass_begin(struct orl_gpu *gpu, const char *name)
     if (gpu->query_count == ORL_QUERIES_MAX)
         resolve_queries(gpu);
     struct pass_query *query = &gpu->queries[gpu->query_count];
-    if (!query->begin)
-        glCreateQueries(GL_TIMESTAMP, 1, &query->begin);
-    if (!query->end)
-        glCreateQueries(GL_TIMESTAMP, 1, &query->end);
+    if (!query->ids[0])
+        glCreateQueries(GL_TIMESTAMP, 2, query->ids);
     query->pass = gpu->pass;
-    glQueryCounter(query->begin, GL_TIMESTAMP);
+    glQueryCounter(query->ids[0], GL_TIMESTAMP);
 }
 
 // Appends a span to the trace and sets its CPU start. NULL without a trace or room in it.
@@ -92,7 +90,7 @@ void orl_pass_end(struct orl_gpu *gpu)
         }
     } else {
         gpu->queries[gpu->query_count].span = span;
-        glQueryCounter(gpu->queries[gpu->query_count++].end, GL_TIMESTAMP);
+        glQueryCounter(gpu->queries[gpu->query_count++].ids[1], GL_TIMESTAMP);
     }
     gpu->pass = -1;
 }
@@ -127,8 +125,6 @@ size_t orl_gpu_take_times(struct orl_gpu *gpu, struct orl_pass_time *times, size
 
 void orl_gpu_free_queries(struct orl_gpu *gpu)
 {
-    for (size_t i = 0; i < ORL_QUERIES_MAX; i++) {
-        glDeleteQueries(1, &gpu->queries[i].begin);
-        glDeleteQueries(1, &gpu->queries[i].end);
-    }
+    for (size_t i = 0; i < ORL_QUERIES_MAX; i++)
+        glDeleteQueries(2, gpu->queries[i].ids);
 }
