@@ -77,8 +77,8 @@ enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const 
                                size_t size, const void *data, struct orl_buf **out) ORL_CHECK_RESULT;
 void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **buf);
 void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data);
-// Waits for the device.
-void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *data);
+// Reads the first `size` bytes. Waits for the device.
+void orl_buf_read(const struct orl_buf *buf, size_t size, void *data);
 // Sets every 32-bit word to `word`.
 void orl_buf_fill(struct orl_buf *buf, uint32_t word);
 
@@ -120,12 +120,12 @@ bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format);
 int orl_mip_levels(int width, int height);
 // Bytes of one layer with all its levels.
 size_t orl_tex_layer_bytes(const struct orl_tex_params *params);
-// Writes tightly packed pixels of a client format and type, such as GL_RGB, GL_UNSIGNED_BYTE.
-void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
-                   const void *pixels);
-// Writes the width x height part whose top left texel is (x, y) in the same way.
-void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int x, int y, int width,
-                        int height, GLenum format, GLenum type, const void *pixels);
+// Writes level 0 of a texture without layers: tightly packed pixels of a client format and type, such as GL_RGB,
+// GL_UNSIGNED_BYTE.
+void orl_tex_write(struct orl_tex *tex, GLenum format, GLenum type, const void *pixels);
+// Writes the top left width x height part of level 0 of a layer (0 without layers) in the same way.
+void orl_tex_write_layer(struct orl_tex *tex, int layer, int width, int height, GLenum format, GLenum type,
+                         const void *pixels);
 // Reads a level and waits for the device. `size`: room in `pixels`, bytes.
 void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
                   void *pixels);
@@ -137,8 +137,8 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
 // rounded up. Oriel encodes them (gpu/compress.h). Alpha is lost. Waits for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;
-// Sets every channel of every layer of one level to 0.
-void orl_tex_clear(struct orl_tex *tex, int level);
+// Sets every channel of every layer of level 0 to 0.
+void orl_tex_clear(struct orl_tex *tex);
 // Sets every texel of level 0 of a GL_R32UI texture to `word`.
 void orl_tex_fill(struct orl_tex *tex, uint32_t word);
 // A view of a buffer as texels of `format` (GL_RGBA32F, GL_RG32UI, ...), to be bound as an image.

@@ -119,7 +119,7 @@ static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densif
         pixels[2 * i] = luma->u8[i];
         pixels[2 * i + 1] = orl_densify_mask_at(&job->mask, level->number, x, y) ? 255 : 0;
     }
-    orl_tex_write(level->reference, 0, 0, GL_RG, GL_UNSIGNED_BYTE, pixels);
+    orl_tex_write(level->reference, GL_RG, GL_UNSIGNED_BYTE, pixels);
     free(pixels);
     return ORL_OK;
 }
@@ -175,8 +175,8 @@ static enum orl_result upload_sources(const struct densify_device *device, const
         const struct orl_image *luma =
             &job->sources[k]->levels[source_level(job, k, level->number)];
         pack_quads(luma, pad, quads);
-        orl_tex_write_part(level->sources, 0, k, 0, 0, luma->width + 2 * pad, luma->height + 2 * pad,
-                           GL_RED_INTEGER, GL_UNSIGNED_INT, quads);
+        orl_tex_write_layer(level->sources, k, luma->width + 2 * pad, luma->height + 2 * pad,
+                            GL_RED_INTEGER, GL_UNSIGNED_INT, quads);
     }
     free(quads);
     return ORL_OK;
@@ -201,8 +201,8 @@ static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct de
         size_t count = (size_t)depth->width * (size_t)depth->height;
         for (size_t i = 0; i < count; i++)
             inverse[i] = depth->f32[i] > 0.0f ? 1.0f / depth->f32[i] : 0.0f;
-        orl_tex_write_part(level->source_depths, 0, k, 0, 0, depth->width, depth->height, GL_RED,
-                           GL_FLOAT, inverse);
+        orl_tex_write_layer(level->source_depths, k, depth->width, depth->height, GL_RED,
+                            GL_FLOAT, inverse);
     }
     free(inverse);
     return ORL_OK;
@@ -222,7 +222,7 @@ static enum orl_result upload_start(struct orl_gpu *gpu, const struct densify_jo
         memcpy(&pixels[4 * i], &normal->f32[3 * i], 3 * sizeof *pixels);
         pixels[4 * i + 3] = depth->f32[i];
     }
-    orl_tex_write(level->extra, 0, 0, GL_RGBA, GL_FLOAT, pixels);
+    orl_tex_write(level->extra, GL_RGBA, GL_FLOAT, pixels);
     free(pixels);
     return ORL_OK;
 }
@@ -233,7 +233,7 @@ static enum orl_result upload_seeds(struct orl_gpu *gpu, const struct densify_jo
     struct orl_tex_params params = {.width = job->seeds.width, .height = job->seeds.height,
                                     .format = GL_R32F, .tag = "densify seeds"};
     ORL_TRY(orl_tex_create(gpu, &params, &level->extra));
-    orl_tex_write(level->extra, 0, 0, GL_RED, GL_FLOAT, job->seeds.f32);
+    orl_tex_write(level->extra, GL_RED, GL_FLOAT, job->seeds.f32);
     return ORL_OK;
 }
 

@@ -52,11 +52,11 @@ void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *
     glDeleteBuffers(1, &staging);
 }
 
-void orl_buf_read(const struct orl_buf *buf, size_t offset, size_t size, void *data)
+void orl_buf_read(const struct orl_buf *buf, size_t size, void *data)
 {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glFinish(); // for the same reason
-    glGetNamedBufferSubData(buf->id, (GLintptr)offset, (GLsizeiptr)size, data);
+    glGetNamedBufferSubData(buf->id, 0, (GLsizeiptr)size, data);
 }
 
 void orl_buf_fill(struct orl_buf *buf, uint32_t word)
@@ -199,20 +199,18 @@ void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
     *handle = NULL;
 }
 
-void orl_tex_write_part(struct orl_tex *tex, int level, int layer, int x, int y, int width,
-                        int height, GLenum format, GLenum type, const void *pixels)
+void orl_tex_write_layer(struct orl_tex *tex, int layer, int width, int height, GLenum format, GLenum type,
+                         const void *pixels)
 {
     if (tex->params.layers)
-        glTextureSubImage3D(tex->id, level, x, y, layer, width, height, 1, format, type, pixels);
+        glTextureSubImage3D(tex->id, 0, 0, 0, layer, width, height, 1, format, type, pixels);
     else
-        glTextureSubImage2D(tex->id, level, x, y, width, height, format, type, pixels);
+        glTextureSubImage2D(tex->id, 0, 0, 0, width, height, format, type, pixels);
 }
 
-void orl_tex_write(struct orl_tex *tex, int level, int layer, GLenum format, GLenum type,
-                   const void *pixels)
+void orl_tex_write(struct orl_tex *tex, GLenum format, GLenum type, const void *pixels)
 {
-    orl_tex_write_part(tex, level, layer, 0, 0, level_side(tex->params.width, level),
-                       level_side(tex->params.height, level), format, type, pixels);
+    orl_tex_write_layer(tex, 0, tex->params.width, tex->params.height, format, type, pixels);
 }
 
 void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum type, size_t size,
@@ -222,12 +220,12 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
     glGetTextureImage(tex->id, level, format, type, (GLsizei)size, pixels);
 }
 
-void orl_tex_clear(struct orl_tex *tex, int level)
+void orl_tex_clear(struct orl_tex *tex)
 {
     // Integer formats require integer client data; the other formats accept any.
     bool integer = orl_texel_format(tex->params.format)->integer;
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
-    glClearTexImage(tex->id, level, integer ? GL_RED_INTEGER : GL_RED,
+    glClearTexImage(tex->id, 0, integer ? GL_RED_INTEGER : GL_RED,
                     integer ? GL_UNSIGNED_INT : GL_FLOAT, NULL);
 }
 

@@ -115,7 +115,7 @@ enum orl_result orl_soft_descent_step(struct orl_gpu *gpu, struct orl_soft_desce
     orl_tex_read(d->raster.blended, 0, GL_RGBA, GL_FLOAT, orl_image_bytes(&d->picture), d->picture.f32);
     ORL_TRY(orl_gpu_finish(gpu));
     ORL_TRY(orl_soft_loss(log, &d->picture, &photo->color, photo->use.data ? &photo->use : NULL, &d->gradient, loss));
-    orl_tex_write(d->gradient_target, 0, 0, GL_RGBA, GL_FLOAT, d->gradient.f32);
+    orl_tex_write(d->gradient_target, GL_RGBA, GL_FLOAT, d->gradient.f32);
     block.eye[3] = decay;
     return update(gpu, d, &block);
 }
@@ -178,9 +178,9 @@ enum orl_result orl_soft_descend(struct orl_gpu *gpu, const struct orl_soft_phot
     descent.max_bytes = params->max_bytes;
     ORL_THEN(result, run(gpu, &descent, photos, order, count, params, report));
     if (result == ORL_OK) {
-        orl_buf_read(descent.raster.splats, 0, bytes, model->splats);
-        orl_buf_read(descent.mean, 0, bytes, model->moments);
-        orl_buf_read(descent.square, 0, bytes, model->moments + model->count);
+        orl_buf_read(descent.raster.splats, bytes, model->splats);
+        orl_buf_read(descent.mean, bytes, model->moments);
+        orl_buf_read(descent.square, bytes, model->moments + model->count);
         result = orl_gpu_finish(gpu);
     }
     orl_soft_descent_finish(gpu, &descent);

@@ -94,7 +94,7 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
         .groups = {orl_groups(raster->count, ORL_POINT_GROUP)},
         .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                    GL_BUFFER_UPDATE_BARRIER_BIT});
-    orl_buf_read(raster->bounds, 0, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
+    orl_buf_read(raster->bounds, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
     ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
     ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, view->camera.width,
                                 view->camera.height, &raster->lists));

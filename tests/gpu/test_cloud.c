@@ -72,10 +72,10 @@ static size_t read_list(const struct scene *s, bool *listed, size_t capacity)
     const struct point_chunk *chunk = &cloud_of(s)->chunks[0];
     uint32_t args[4];
     static uint32_t blocks[COUNT];
-    orl_buf_read(chunk->args, 0, sizeof args, args);
+    orl_buf_read(chunk->args, sizeof args, args);
     assert_between(args[3], 0, COUNT);
     assert_int_equal(args[0], (args[3] + ORL_SPLAT_POINTS - 1) / ORL_SPLAT_POINTS);
-    orl_buf_read(chunk->list, 0, args[3] * sizeof *blocks, blocks);
+    orl_buf_read(chunk->list, args[3] * sizeof *blocks, blocks);
     memset(listed, 0, capacity);
     for (uint32_t i = 0; i < args[3]; i++) {
         assert_true(blocks[i] < capacity);
@@ -93,8 +93,8 @@ static void read_positions(const struct point_chunk *chunk, float (*positions)[3
     static uint32_t codes[CAPACITY][2];
     static float blocks[CAPACITY / ORL_BLOCK_POINTS][ORL_BLOCK_VEC4S][4];
     assert_between(chunk->count, 1, CAPACITY);
-    orl_buf_read(chunk->points, 0, (size_t)chunk->count * sizeof *codes, codes);
-    orl_buf_read(chunk->blocks, 0, (size_t)chunk->block_count * sizeof *blocks, blocks);
+    orl_buf_read(chunk->points, (size_t)chunk->count * sizeof *codes, codes);
+    orl_buf_read(chunk->blocks, (size_t)chunk->block_count * sizeof *blocks, blocks);
     for (int i = 0; i < chunk->count; i++) {
         const float *corner = blocks[i / ORL_BLOCK_POINTS][2];
         const struct point_frame frame = {{corner[0], corner[1], corner[2]}, corner[3]};

@@ -22,7 +22,7 @@ static void guess(float *depth)
     struct depth_map_block block = {.drawn_size = {WIDTH, HEIGHT}, .kept_size = {WIDTH, HEIGHT}};
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &guessed), ORL_OK);
-    orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, depth);
+    orl_tex_write(tex, GL_RED, GL_FLOAT, depth);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/photo_holes.comp", NULL, NULL),
                              .params = &block, .params_size = sizeof block,
                              .images = {{tex, 0, GL_READ_ONLY}, {guessed, 0, GL_WRITE_ONLY}},

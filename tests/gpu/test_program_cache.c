@@ -30,7 +30,7 @@ static size_t create_and_run(const char *defines)
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
     params.format = GL_RGBA16F;
     assert_int_equal(orl_tex_create(gpu, &params, &normal), ORL_OK);
-    orl_tex_write(in, 0, 0, GL_RED, GL_FLOAT, depth);
+    orl_tex_write(in, GL_RED, GL_FLOAT, depth);
     struct pyramid_block block = {.level_size = {SIDE, SIDE}, .min_support = 8};
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block, .groups = {1, 1, 1},

@@ -38,7 +38,7 @@ static void read_order(const struct proxy *proxy, struct drawn *out)
     assert_true(chunk->count <= POINTS_MAX);
     assert_null(chunk->colors); // until they are asked for
     assert_int_equal(orl_cloud_bring_colors(gpu, cloud), ORL_OK);
-    orl_buf_read(chunk->colors, 0, (size_t)chunk->count * sizeof *colors, colors);
+    orl_buf_read(chunk->colors, (size_t)chunk->count * sizeof *colors, colors);
     for (int i = 0; i < chunk->count; i++)
         out->listed[i] = (uint32_t)colors[i][0] | (uint32_t)colors[i][1] << 8;
 }

@@ -51,7 +51,7 @@ static double loss_of(const struct orl_soft_model *model, const struct orl_soft_
     assert_int_equal(orl_soft_descent_step(gpu, &descent, photo, 0, &loss), ORL_OK);
     const size_t values = model->count * ORL_SOFT_VALUES;
     if (gradient)
-        orl_buf_read(descent.mean, 0, values * sizeof *gradient, gradient);
+        orl_buf_read(descent.mean, values * sizeof *gradient, gradient);
     for (size_t i = 0; gradient && i < values; i++)
         gradient[i] *= 10; // the running mean of one gradient is a tenth of it
     orl_soft_descent_finish(gpu, &descent);
@@ -263,7 +263,7 @@ static void show_splats(struct orl_tex *blended, size_t open, size_t white)
     for (size_t i = 0; i < SIDE * SIDE; i++)
         for (int c = 0; c < 4; c++)
             pixels[i][c] = c == 3 ? i == open : i == open ? 0 : i == white ? 1 : 0.5f;
-    orl_tex_write(blended, 0, 0, GL_RGBA, GL_FLOAT, pixels);
+    orl_tex_write(blended, GL_RGBA, GL_FLOAT, pixels);
     orl_tex_make_mipmaps(blended, 0);
 }
 
@@ -298,8 +298,8 @@ static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, fl
     const struct soft_block block = {.view_size = {SIDE, SIDE}, .correct_share = 0.5f, .mix_share = splats,
                                      .mean_level = level};
     show_splats(blended, open, SIDE * SIDE);
-    orl_tex_write(other, 0, 0, GL_RED, GL_FLOAT, gathered);
-    orl_tex_write(own, 0, 0, GL_RGBA, GL_FLOAT, picture);
+    orl_tex_write(other, GL_RED, GL_FLOAT, gathered);
+    orl_tex_write(own, GL_RGBA, GL_FLOAT, picture);
     struct orl_dispatch d = {
         .prog = orl_prog_get(gpu, "soft/compare.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
         .textures = {blended}, .images = {{other, 0, GL_READ_ONLY}, {differs, 0, GL_WRITE_ONLY}},

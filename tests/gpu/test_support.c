@@ -20,7 +20,7 @@ static void support(float *depth)
     assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &normal_params, &normal), ORL_OK);
-    orl_tex_write(in, 0, 0, GL_RED, GL_FLOAT, depth);
+    orl_tex_write(in, GL_RED, GL_FLOAT, depth);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, NULL),
                              .params = &block, .params_size = sizeof block,
                              .images = {{in, 0, GL_READ_ONLY}, {out, 0, GL_WRITE_ONLY},

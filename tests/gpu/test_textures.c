@@ -230,7 +230,7 @@ static void ycc_keeps_luma_and_chroma(void **state)
     static const int wanted[2][3] = {{76, 85, 255}, {102, 195, 70}};
     for (int i = 0; i < W * H; i++)
         memcpy(in[i], colors[i % W > W / 2], 4);
-    orl_tex_write(from, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, in);
+    orl_tex_write(from, GL_RGBA, GL_UNSIGNED_BYTE, in);
     assert_int_equal(orl_tex_compress_layer(gpu, from, luma, 0), ORL_OK);
     assert_int_equal(orl_tex_compress_layer(gpu, from, chroma, 0), ORL_OK);
     orl_tex_read(luma, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof y, y);

@@ -31,7 +31,7 @@ static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
                                           .height = cone->distance.height, .format = GL_R32F,
                                           .linear = true, .tag = "silhouette"};
     ORL_TRY(orl_tex_create(gpu, &params, &tex));
-    orl_tex_write(tex, 0, 0, GL_RED, GL_FLOAT, cone->distance.data);
+    orl_tex_write(tex, GL_RED, GL_FLOAT, cone->distance.data);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL),
                              .params = block, .params_size = sizeof *block,
                              .bufs = {field}, .textures = {tex},

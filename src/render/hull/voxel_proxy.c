@@ -186,7 +186,7 @@ enum orl_result orl_voxels_see(const struct frame *frame, struct voxel_state *st
         if (frame->photos->states[i].usable)
             result = see_from(frame, state, i, seen);
     if (result == ORL_OK)
-        orl_buf_read(seen, 0, words * sizeof *state->seen, state->seen);
+        orl_buf_read(seen, words * sizeof *state->seen, state->seen);
     orl_buf_destroy(frame->gpu, &seen);
     if (result != ORL_OK) {
         free(state->seen);

@@ -97,7 +97,7 @@ enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *c
     memcpy(voxels->cube.origin, cones->bounds.origin, sizeof voxels->cube.origin);
     voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
     ORL_TRY_MEMORY(voxels->field);
-    orl_buf_read(field, 0, cells(side) * sizeof *voxels->field, voxels->field);
+    orl_buf_read(field, cells(side) * sizeof *voxels->field, voxels->field);
     return ORL_OK;
 }
 

@@ -49,7 +49,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
-    orl_tex_clear(frame->paint->fill.guesses, 0);
+    orl_tex_clear(frame->paint->fill.guesses);
     orl_gpu_pass(frame->gpu, "gather", &d);
 }
 
@@ -62,9 +62,9 @@ static enum orl_result paint_chosen(const struct frame *frame)
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, groups);
     ORL_TRY(make_lists(frame, across * down, (size_t)groups[0] * groups[1]));
     if (frame->chosen_count == 0 && !frame->progressive) {
-        orl_tex_clear(frame->picture, 0);
+        orl_tex_clear(frame->picture);
         if (orl_edges_find_specks(frame))
-            orl_tex_clear(frame->paint->edges.painted, 0);
+            orl_tex_clear(frame->paint->edges.painted);
         return ORL_OK;
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);

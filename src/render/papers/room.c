@@ -106,7 +106,7 @@ enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *a
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
     *absent = 0;
-    orl_tex_clear(room->picture, 0);
+    orl_tex_clear(room->picture);
     enum orl_result result = orl_select_all.choose(&walls, 0);
     if (result == ORL_OK && frame->progressive)
         result = keep_present(&walls, backgrounds, absent);

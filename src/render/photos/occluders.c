@@ -45,7 +45,7 @@ enum orl_result orl_occluders_put(const struct frame *frame, size_t photo, const
                                           .format = GL_R8, .tag = "occluders"};
     result = orl_tex_create(frame->gpu, &params, &mask);
     if (result == ORL_OK) {
-        orl_tex_write(mask, 0, 0, GL_RED, GL_UNSIGNED_BYTE, image.u8);
+        orl_tex_write(mask, GL_RED, GL_UNSIGNED_BYTE, image.u8);
         put(frame, photo, kept, mask);
     }
     orl_tex_destroy(frame->gpu, &mask);

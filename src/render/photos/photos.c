@@ -322,8 +322,8 @@ void orl_photos_follow_time_step(struct photos *photos)
 static void write_pixels(const struct orl_image *image, struct orl_tex *tex, int layer)
 {
     bool radiance = image->type == ORL_PIXEL_F32;
-    orl_tex_write_part(tex, 0, layer, 0, 0, image->width, image->height, radiance ? GL_RGBA : GL_RGB,
-                       radiance ? GL_FLOAT : GL_UNSIGNED_BYTE, image->data);
+    orl_tex_write_layer(tex, layer, image->width, image->height, radiance ? GL_RGBA : GL_RGB,
+                        radiance ? GL_FLOAT : GL_UNSIGNED_BYTE, image->data);
 }
 
 // Loads a photograph smaller: a mip level of the full one, box-filtered in linear light.
@@ -377,7 +377,7 @@ static enum orl_result make_radiance(const struct orl_log *log, struct photos *p
 static enum orl_result make_loading(struct orl_gpu *gpu, struct photos *photos)
 {
     if (photos->loading) { // remains of an earlier photograph would bleed into the mipmaps
-        orl_tex_clear(photos->loading, 0);
+        orl_tex_clear(photos->loading);
         return ORL_OK;
     }
     struct orl_tex_params params = photos->color_params;
@@ -629,8 +629,8 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
         photos->mask ? ORL_OK : orl_tex_create(frame->gpu, &params, &photos->mask);
     ORL_THEN(result, make_alpha(frame, photo, &alpha));
     if (result == ORL_OK) {
-        orl_tex_write_part(photos->mask, 0, state->slot, 0, 0, alpha.width, alpha.height, GL_RED,
-                           GL_UNSIGNED_BYTE, alpha.data);
+        orl_tex_write_layer(photos->mask, state->slot, alpha.width, alpha.height, GL_RED,
+                            GL_UNSIGNED_BYTE, alpha.data);
         orl_tex_make_mipmaps(photos->mask, state->slot);
         photos->uploaded += orl_image_bytes(&alpha);
         state->has_mask = true;
