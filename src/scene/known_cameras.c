@@ -74,16 +74,20 @@ static const char *camera_problem(const struct orl_known_camera *given)
     return *given->path ? NULL : "its picture has no name";
 }
 
-static enum orl_result add_camera(const struct orl_log *log, const char *file, const char *place,
-                                  const struct orl_known_camera *given,
+enum orl_result orl_known_bad(const struct orl_known_source *source, const char *place, const char *what)
+{
+    return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s: %s", source->path, place, what);
+}
+
+static enum orl_result add_camera(const struct orl_known_source *source, const struct orl_known_camera *given,
                                   struct orl_known_cameras *known)
 {
     struct orl_colmap_model *model = &known->model;
     size_t count = model->camera_count;
     if (count && same_camera(&model->cameras[count - 1], &known->gaps[count - 1], given))
         return ORL_OK;
-    ORL_TRY(ORL_GROW(log, model->cameras, model->camera_capacity, count));
-    ORL_TRY(ORL_GROW(log, known->gaps, known->gap_capacity, count));
+    ORL_TRY(ORL_GROW(source->log, model->cameras, model->camera_capacity, count));
+    ORL_TRY(ORL_GROW(source->log, known->gaps, known->gap_capacity, count));
     struct orl_colmap_camera *camera = &model->cameras[count];
     *camera = (struct orl_colmap_camera){.id = (uint32_t)count + 1, .model = given->model,
                                          .param_count = orl_colmap_model_lens(given->model).params};
@@ -96,7 +100,7 @@ static enum orl_result add_camera(const struct orl_log *log, const char *file, c
     }
     const char *problem =
         orl_colmap_camera_set(camera, (uint64_t)given->width, (uint64_t)given->height);
-    return problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, problem) : ORL_OK;
+    return problem ? orl_known_bad(source, given->place, problem) : ORL_OK;
 }
 
 // A stated path, as other systems write them, too: '/' between its parts, no "./" ahead of them.
@@ -124,15 +128,15 @@ bool orl_known_find(const char *folder, const char *stated, char path[ORL_PATH_S
     return false;
 }
 
-enum orl_result orl_known_add(const struct orl_log *log, const char *file, const char *place,
-                              const struct orl_known_camera *given,
+enum orl_result orl_known_add(const struct orl_known_source *source, const struct orl_known_camera *given,
                               struct orl_known_cameras *known)
 {
+    const struct orl_log *log = source->log;
     struct orl_colmap_model *model = &known->model;
     const char *problem = camera_problem(given);
     if (problem)
-        return orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, problem);
-    ORL_TRY(add_camera(log, file, place, given, known));
+        return orl_known_bad(source, given->place, problem);
+    ORL_TRY(add_camera(source, given, known));
     size_t count = model->image_count;
     ORL_TRY(ORL_GROW(log, model->images, model->image_capacity, count));
     ORL_TRY(ORL_GROW(log, known->pictures, known->picture_capacity, count));

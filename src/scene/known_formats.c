@@ -57,27 +57,28 @@ struct format {
     orl_known_reader *read;
     const char *arrays[2]; // JSON: the root has arrays of these names; of a list, its entries have objects
     bool is_list;          // JSON: the root is a list
+    double centre;         // coordinate of the first pixel's centre, where neither the file nor the user states it
 };
 
 // A folder that has several is read as the first of them.
 static const struct format formats[] = {
-    {"COLMAP model", "cameras.bin cameras.txt images.bin images.txt", PATH, read_colmap, {0}, false},
-    {"Oriel's cameras.json", "cameras.json", JSON, orl_known_read_own, {"cameras"}, false},
-    {"OpenSfM", "reconstruction.json opensfm/reconstruction.json", JSON, orl_known_read_opensfm, {"shots"}, true},
-    {"Inria's cameras.json", "cameras.json", JSON, orl_known_read_inria, {0}, true},
+    {"COLMAP model", "cameras.bin cameras.txt images.bin images.txt", PATH, read_colmap, {0}, false, 0.5},
+    {"Oriel's cameras.json", "cameras.json", JSON, orl_known_read_own, {"cameras"}, false, 0},
+    {"OpenSfM", "reconstruction.json opensfm/reconstruction.json", JSON, orl_known_read_opensfm, {"shots"}, true, 0.5},
+    {"Inria's cameras.json", "cameras.json", JSON, orl_known_read_inria, {0}, true, 0.5},
     {"transforms.json (nerfstudio, instant-ngp, Blender)", "transforms.json", JSON, orl_known_read_transforms,
-     {"frames"}, false},
-    {"Blender's set", "transforms_train.json", FOLDER, orl_known_read_splits, {0}, false},
-    {"Bundler", "bundle/bundle.out bundle.out *.out", TEXT, orl_known_read_bundler, {0}, false},
-    {"LLFF", "poses_bounds.npy", BYTES, orl_known_read_llff, {0}, false},
-    {"Record3D", "metadata.json EXR_RGBD/metadata.json", JSON, orl_known_read_record3d, {"poses", "K"}, false},
+     {"frames"}, false, 0.5},
+    {"Blender's set", "transforms_train.json", FOLDER, orl_known_read_splits, {0}, false, 0.5},
+    {"Bundler", "bundle/bundle.out bundle.out *.out", TEXT, orl_known_read_bundler, {0}, false, 0.5},
+    {"LLFF", "poses_bounds.npy", BYTES, orl_known_read_llff, {0}, false, 0.5},
+    {"Record3D", "metadata.json EXR_RGBD/metadata.json", JSON, orl_known_read_record3d, {"poses", "K"}, false, 0.5},
     {"Polycam", "keyframes/cameras keyframes/corrected_cameras cameras corrected_cameras", FOLDER,
-     orl_known_read_polycam, {0}, false},
-    {"Middlebury", "*_par.txt", TEXT, orl_known_read_middlebury, {0}, false},
-    {"Meshroom", "*.sfm", JSON, orl_known_read_meshroom, {"views", "intrinsics"}, false},
-    {"VisualSFM", "*.nvm", TEXT, orl_known_read_nvm, {0}, false},
-    {"Metashape", "*.xml", BYTES, orl_known_read_metashape, {0}, false},
-    {"RealityScan", "*.csv", TEXT, orl_known_read_realityscan, {0}, false},
+     orl_known_read_polycam, {0}, false, 0.5},
+    {"Middlebury", "*_par.txt", TEXT, orl_known_read_middlebury, {0}, false, 0},
+    {"Meshroom", "*.sfm", JSON, orl_known_read_meshroom, {"views", "intrinsics"}, false, 0.5},
+    {"VisualSFM", "*.nvm", TEXT, orl_known_read_nvm, {0}, false, 0.5},
+    {"Metashape", "*.xml", BYTES, orl_known_read_metashape, {0}, false, 0.5},
+    {"RealityScan", "*.csv", TEXT, orl_known_read_realityscan, {0}, false, 0.5},
 };
 
 char *orl_known_formats_text(const struct orl_log *log)
@@ -121,6 +122,19 @@ static enum orl_result unknown(const struct orl_log *log, const char *path)
 
 // --- a file ---
 
+enum orl_result orl_known_set_shift(struct orl_known_source *source, double custom)
+{
+    const json_t *told = json_object_get(source->root, "pixel_centre");
+    double centre = source->pixel_centre >= 0 ? source->pixel_centre
+                    : json_is_number(told)    ? json_number_value(told)
+                                              : custom;
+    source->shift = 0.5 - centre;
+    return centre >= 0 && centre <= 0.5
+               ? ORL_OK
+               : orl_fail(source->log, ORL_ERR_FORMAT, "%s: \"pixel_centre\" is not from 0 to 0.5",
+                          source->path);
+}
+
 static enum orl_result read_with(const struct format *format,
                                  const struct orl_known_source *source,
                                  struct orl_known_cameras *known)
@@ -134,6 +148,7 @@ static enum orl_result read_with(const struct format *format,
     else if (format->content == BYTES)
         result = orl_file_read(source->log, source->path, ORL_KNOWN_FILE_MAX, &data, &opened.size);
     opened.data = data;
+    ORL_THEN(result, orl_known_set_shift(&opened, format->centre));
     ORL_THEN(result, format->read(&opened, known));
     orl_text_close(&lines);
     free(data);

@@ -17,7 +17,8 @@ enum { ORL_COLMAP_PINHOLE = 1, ORL_COLMAP_RADIAL = 3, ORL_COLMAP_OPENCV = 4,
 
 // One camera of a file.
 struct orl_known_camera {
-    const char *path; // of the picture, as the file states it
+    const char *place; // names the camera in messages, such as "camera 3"
+    const char *path;  // of the picture, as the file states it
     const char *mask; // likewise; NULL: none
     enum orl_known_split split;
     int width, height; // 0 0: not stated
@@ -31,12 +32,6 @@ struct orl_known_camera {
 // k4 k5 k6 or of a fisheye k1 k2 k3 k4, to the simplest COLMAP model.
 void orl_known_set_lens(struct orl_known_camera *camera, const double f_c[4], const double *distortion,
                         size_t count, bool fisheye);
-// Appends a camera. It is shared with the previous one when the two are equal. `place` names the
-// camera in messages, such as "camera 3".
-enum orl_result orl_known_add(const struct orl_log *log, const char *file, const char *place,
-                              const struct orl_known_camera *camera,
-                              struct orl_known_cameras *known) ORL_CHECK_RESULT;
-
 // Appends a point, unless it is not finite or absurdly far.
 enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
                                     const double rgb[3],
@@ -62,11 +57,21 @@ struct orl_known_source {
     const struct orl_log *log;
     const char *path;    // of the file or, for formats of many files, the folder
     double pixel_centre; // negative: the format's convention
+    double shift;        // added to the file's pixel coordinates, gives COLMAP's
     const json_t *root;  // of a file in JSON
     struct orl_text_lines *lines; // of a file of text, ahead of the first
     const uint8_t *data; // of another file
     size_t size;
 };
+// Sets source->shift, where the file may state "pixel_centre". custom: the coordinate of the first pixel's centre
+// where nobody states it.
+enum orl_result orl_known_set_shift(struct orl_known_source *source, double custom) ORL_CHECK_RESULT;
+// Logs what is wrong with a camera; returns ORL_ERR_FORMAT.
+enum orl_result orl_known_bad(const struct orl_known_source *source, const char *place, const char *what);
+// Appends a camera. It is shared with the previous one when the two are equal.
+enum orl_result orl_known_add(const struct orl_known_source *source, const struct orl_known_camera *camera,
+                              struct orl_known_cameras *known) ORL_CHECK_RESULT;
+
 // Appends the cameras of a source, and sets what else the file states.
 typedef enum orl_result orl_known_reader(const struct orl_known_source *source,
                                          struct orl_known_cameras *known);

@@ -11,60 +11,50 @@
 #include "scene/known_internal.h"
 #include "scene/manifest.h"
 
-// The entry being read.
-struct entry {
-    const struct orl_log *log;
-    const char *file;
-    char place[160]; // "camera 3 (0003.jpg)"
-    double shift;    // added to the file's pixel coordinates, gives COLMAP's
-};
+enum { PLACE_SIZE = 160 };
 
-static enum orl_result bad(const struct entry *e, const char *what)
+// "camera 3 (0003.jpg)"
+static const char *place_of(size_t index, const char *name, char place[PLACE_SIZE])
 {
-    return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: %s", e->file, e->place, what);
-}
-
-static void set_place(struct entry *e, size_t index, const char *name)
-{
-    snprintf(e->place, sizeof e->place, "camera %zu%s%.120s%s", index, name ? " (" : "",
-             name ? name : "", name ? ")" : "");
+    snprintf(place, PLACE_SIZE, "camera %zu%s%.120s%s", index, name ? " (" : "", name ? name : "", name ? ")" : "");
+    return place;
 }
 
 // --- cameras.json ---
 
-static enum orl_result read_own(const struct entry *e, const json_t *item,
+static enum orl_result read_own(const struct orl_known_source *source, const json_t *item,
                                 struct orl_known_camera *camera)
 {
     double k[3][3], dist[8];
     const json_t *distortion = json_object_get(item, "dist");
     size_t terms = json_array_size(distortion);
     if (!orl_json_rows(json_object_get(item, "K"), 3, 3, &k[0][0]))
-        return bad(e, "\"K\" is not 3 rows of 3 numbers");
+        return orl_known_bad(source, camera->place, "\"K\" is not 3 rows of 3 numbers");
     if (!orl_json_rows(json_object_get(item, "R"), 3, 3, &camera->pose.r[0][0]))
-        return bad(e, "\"R\" is not 3 rows of 3 numbers");
+        return orl_known_bad(source, camera->place, "\"R\" is not 3 rows of 3 numbers");
     if (!orl_json_read_numbers(json_object_get(item, "t"), 3, camera->pose.t))
-        return bad(e, "\"t\" is not 3 numbers");
+        return orl_known_bad(source, camera->place, "\"t\" is not 3 numbers");
     if (distortion && (terms > ORL_COUNT(dist) || !orl_json_read_numbers(distortion, terms, dist)))
-        return bad(e, "\"dist\" is not up to 8 numbers, k1 k2 p1 p2 k3 k4 k5 k6");
+        return orl_known_bad(source, camera->place, "\"dist\" is not up to 8 numbers, k1 k2 p1 p2 k3 k4 k5 k6");
     camera->width = orl_json_side(item, "width");
     camera->height = orl_json_side(item, "height");
     // Only cameras without skew are supported: it may shift a pixel by at most half a pixel
     // within the picture's half height.
     if (!(fabs(k[0][1]) * camera->height <= fabs(k[1][1])))
-        return bad(e, "\"K\" has a skew, which is not supported");
-    const double f_c[4] = {k[0][0], k[1][1], k[0][2] + e->shift, k[1][2] + e->shift};
+        return orl_known_bad(source, camera->place, "\"K\" has a skew, which is not supported");
+    const double f_c[4] = {k[0][0], k[1][1], k[0][2] + source->shift, k[1][2] + source->shift};
     orl_known_set_lens(camera, f_c, dist, terms, false);
     return ORL_OK;
 }
 
 // --- Inria's ---
 
-static enum orl_result read_inria(const struct entry *e, const json_t *item,
+static enum orl_result read_inria(const struct orl_known_source *source, const json_t *item,
                                   struct orl_known_camera *camera)
 {
     struct orl_view view;
     if (!orl_json_inria_view(item, &view) || orl_view_problem(&view))
-        return bad(e, "position, rotation, width, height, fx or fy is missing or not usable");
+        return orl_known_bad(source, camera->place, "position, rotation, width, height, fx or fy is missing or not usable");
     const struct orl_camera *c = &view.camera;
     const double f_c[4] = {c->fx, c->fy, c->cx, c->cy};
     orl_known_set_lens(camera, f_c, NULL, 0, false);
@@ -114,9 +104,10 @@ static bool find_lens(const json_t *root, const json_t *frame, bool *is_fisheye)
     return known;
 }
 
-static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root,
-                                       const json_t *frame, struct orl_known_camera *camera)
+static enum orl_result read_nerfstudio(const struct orl_known_source *source, const json_t *frame,
+                                       struct orl_known_camera *camera)
 {
+    const json_t *root = source->root;
     static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"};
     static const char *const fisheye[] = {"k1", "k2", "k3", "k4"};
     double rows[16], f_c[4], terms[5] = {0}, width = 0, height = 0, other;
@@ -124,14 +115,14 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
     const json_t *matrix = json_object_get(frame, "transform_matrix");
     if (!orl_json_rows(matrix, json_array_size(matrix) == 3 ? 3 : 4, 4, rows) ||
         !orl_pose_from_opengl(rows, &camera->pose))
-        return bad(e, "\"transform_matrix\" is not 4 rows of 4 numbers with a rotation");
+        return orl_known_bad(source, camera->place, "\"transform_matrix\" is not 4 rows of 4 numbers with a rotation");
     if (json_array_size(matrix) == 4 && (rows[12] != 0 || rows[13] != 0 || rows[14] != 0 || rows[15] != 1))
-        return bad(e, "the last row of \"transform_matrix\" is not 0 0 0 1");
+        return orl_known_bad(source, camera->place, "the last row of \"transform_matrix\" is not 0 0 0 1");
     bool is_fisheye;
     if (!find_lens(root, frame, &is_fisheye))
-        return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: its camera_model, %.60s, is not read: Oriel "
+        return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s: its camera_model, %.60s, is not read: Oriel "
                         "reads PINHOLE, OPENCV, RADIAL and OPENCV_FISHEYE; panoramas must be cut into "
-                        "flat views", e->file, e->place, camera_model(root, frame));
+                        "flat views", source->path, camera->place, camera_model(root, frame));
     camera->gap.size = !number(root, frame, "w", &width) || !number(root, frame, "h", &height);
     if (!camera->gap.size) {
         camera->width = width >= 1 && width <= ORL_IMAGE_MAX_SIDE ? (int)width : 0;
@@ -143,54 +134,40 @@ static enum orl_result read_nerfstudio(const struct entry *e, const json_t *root
     } else if (number(root, frame, "camera_angle_x", &camera->gap.fov_x_rad)) {
         f_c[0] = f_c[1] = 0;
     } else {
-        return bad(e, "neither fl_x nor camera_angle_x");
+        return orl_known_bad(source, camera->place, "neither fl_x nor camera_angle_x");
     }
     camera->gap.centre =
         !number(root, frame, "cx", &f_c[2]) || !number(root, frame, "cy", &f_c[3]);
     for (int i = 2; i < 4; i++)
-        f_c[i] = camera->gap.centre ? 0 : f_c[i] + e->shift;
+        f_c[i] = camera->gap.centre ? 0 : f_c[i] + source->shift;
     for (size_t i = 0; is_fisheye ? i < ORL_COUNT(fisheye) : i < ORL_COUNT(brown); i++)
         if (!number(root, frame, is_fisheye ? fisheye[i] : brown[i], &terms[i]))
             terms[i] = 0;
     const char *const lost[2] = {is_fisheye ? "p1" : "k4", is_fisheye ? "p2" : "k4"};
     for (size_t i = 0; i < ORL_COUNT(lost); i++)
         if (number(root, frame, lost[i], &other) && other != 0)
-            return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s: %s of its lens is not read: undistort the "
-                            "pictures with the program that calibrated them", e->file, e->place, lost[i]);
+            return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s: %s of its lens is not read: undistort the "
+                            "pictures with the program that calibrated them", source->path, camera->place, lost[i]);
     orl_known_set_lens(camera, f_c, terms, is_fisheye ? ORL_COUNT(fisheye) : ORL_COUNT(brown), is_fisheye);
     return ORL_OK;
 }
 
 // --- lists of cameras ---
 
-// Gets the coordinate of the first pixel's centre.
-static enum orl_result begin(const struct orl_known_source *source, double custom, struct entry *e)
-{
-    const json_t *told = json_object_get(source->root, "pixel_centre");
-    double centre = source->pixel_centre >= 0 ? source->pixel_centre
-                    : json_is_number(told)    ? json_number_value(told)
-                                              : custom;
-    *e = (struct entry){.log = source->log, .file = source->path, .shift = 0.5 - centre};
-    return centre >= 0 && centre <= 0.5
-               ? ORL_OK
-               : orl_fail(source->log, ORL_ERR_FORMAT, "%s: \"pixel_centre\" is not from 0 to 0.5",
-                          source->path);
-}
-
-static enum orl_result read_list(struct entry *e, const json_t *list, const char *name_key,
-                                 enum orl_result (*read)(const struct entry *, const json_t *,
+static enum orl_result read_list(const struct orl_known_source *source, const json_t *list, const char *name_key,
+                                 enum orl_result (*read)(const struct orl_known_source *, const json_t *,
                                                          struct orl_known_camera *),
                                  struct orl_known_cameras *known)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
         const json_t *item = json_array_get(list, i);
-        struct orl_known_camera camera = {.path = orl_json_text(item, name_key)};
-        set_place(e, i, camera.path);
-        if (!camera.path)
-            return orl_fail(e->log, ORL_ERR_FORMAT, "%s: %s has no \"%s\"", e->file, e->place,
-                            name_key);
-        ORL_TRY(read(e, item, &camera));
-        ORL_TRY(orl_known_add(e->log, e->file, e->place, &camera, known));
+        const char *name = orl_json_text(item, name_key);
+        char place[PLACE_SIZE];
+        struct orl_known_camera camera = {.path = name, .place = place_of(i, name, place)};
+        if (!name)
+            return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s has no \"%s\"", source->path, place, name_key);
+        ORL_TRY(read(source, item, &camera));
+        ORL_TRY(orl_known_add(source, &camera, known));
     }
     return ORL_OK;
 }
@@ -202,9 +179,7 @@ enum orl_result orl_known_read_own(const struct orl_known_source *source,
                                        "K", "R", "t", "dist", NULL};
     static const char *const lists[] = {"cameras", NULL};
     const json_t *list = json_object_get(source->root, "cameras");
-    struct entry e;
-    enum orl_result result = begin(source, 0, &e);
-    ORL_THEN(result, read_list(&e, list, "name", read_own, known));
+    enum orl_result result = read_list(source, list, "name", read_own, known);
     ORL_THEN(result, orl_manifest_read_room(source->log, source->path, source->root, &known->room));
     orl_known_say_unused_of(source, source->root, used, lists);
     return result;
@@ -215,9 +190,7 @@ enum orl_result orl_known_read_inria(const struct orl_known_source *source,
 {
     static const char *const used[] = {"id", "img_name", "width", "height", "position", "rotation", "fx",
                                        "fy", NULL};
-    struct entry e;
-    enum orl_result result = begin(source, 0.5, &e);
-    ORL_THEN(result, read_list(&e, source->root, "img_name", read_inria, known));
+    enum orl_result result = read_list(source, source->root, "img_name", read_inria, known);
     orl_known_say_unused_of(source, source->root, used, NULL);
     return result;
 }
@@ -285,24 +258,22 @@ static enum orl_result read_frames(const struct orl_known_source *source,
         "is_fisheye", "train_filenames", "val_filenames", "test_filenames", "ply_file_path", NULL};
     static const char *const lists[] = {"frames", NULL};
     const json_t *root = source->root, *frames = json_object_get(root, "frames");
-    struct entry e;
     bool held_out = split != ORL_KNOWN_TRAIN, any = split == ORL_KNOWN_UNUSED || !json_array_size(frames);
-    ORL_TRY(begin(source, 0.5, &e));
     for (size_t i = 0; i < json_array_size(frames); i++) {
         const json_t *frame = json_array_get(frames, i);
-        struct orl_known_camera camera = {.path = orl_json_text(frame, "file_path"),
-                                          .mask = orl_json_text(frame, "mask_path"),
-                                          .split = split};
-        set_place(&e, i, camera.path);
-        if (!camera.path)
-            return bad(&e, "no \"file_path\"");
+        const char *path = orl_json_text(frame, "file_path");
+        char place[PLACE_SIZE];
+        struct orl_known_camera camera = {.path = path, .mask = orl_json_text(frame, "mask_path"),
+                                          .place = place_of(i, path, place), .split = split};
+        if (!path)
+            return orl_known_bad(source, place, "no \"file_path\"");
         if (split == ORL_KNOWN_TRAIN)
-            camera.split = split_of(root, camera.path);
+            camera.split = split_of(root, path);
         known->splits = known->splits || camera.split != ORL_KNOWN_TRAIN;
         any = any || camera.split != ORL_KNOWN_UNUSED;
         held_out = held_out || camera.split == ORL_KNOWN_TEST;
-        ORL_TRY(read_nerfstudio(&e, root, frame, &camera));
-        ORL_TRY(orl_known_add(e.log, e.file, e.place, &camera, known));
+        ORL_TRY(read_nerfstudio(source, frame, &camera));
+        ORL_TRY(orl_known_add(source, &camera, known));
     }
     orl_known_say_unused_of(source, root, used, lists);
     if (!held_out && json_array_size(json_object_get(root, "test_filenames")))
@@ -346,6 +317,7 @@ enum orl_result orl_known_read_splits(const struct orl_known_source *source,
         if (orl_path_is_file(path)) {
             result = orl_json_read(source->log, path, &root);
             part.root = root;
+            ORL_THEN(result, orl_known_set_shift(&part, 0.5));
             ORL_THEN(result, read_frames(&part, split, known));
             tests = tests || split == ORL_KNOWN_TEST;
         }

@@ -53,7 +53,7 @@ static enum orl_result find_numbers(const struct orl_known_source *source, size_
 static enum orl_result read_pose(const struct orl_known_source *source, const double numbers[NUMBERS],
                                  const char *path, struct orl_known_cameras *known)
 {
-    struct orl_known_camera camera = {.path = path};
+    struct orl_known_camera camera = {.path = path, .place = path};
     double axes[3][3], centre[3], height = numbers[4], width = numbers[9], focal = numbers[14];
     for (int i = 0; i < 3; i++) {
         axes[i][0] = numbers[5 * i + 1];  // right
@@ -69,7 +69,7 @@ static enum orl_result read_pose(const struct orl_known_source *source, const do
     camera.height = (int)height;
     const double f_c[4] = {focal, focal, 0.5 * camera.width, 0.5 * camera.height};
     orl_known_set_lens(&camera, f_c, NULL, 0, false);
-    return orl_known_add(source->log, source->path, path, &camera, known);
+    return orl_known_add(source, &camera, known);
 }
 
 // The file has no names: the pictures are those of images/ beside it, in order of name.

@@ -8,16 +8,6 @@
 #include "scene/json_views.h"
 #include "scene/known_internal.h"
 
-static enum orl_result bad(const struct orl_known_source *source, const char *place, const char *why)
-{
-    return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s: %s", source->path, place, why);
-}
-
-static double shift_of(const struct orl_known_source *source)
-{
-    return 0.5 - (source->pixel_centre >= 0 ? source->pixel_centre : 0.5);
-}
-
 // --- Polycam: cameras/TIME.json beside images/TIME.jpg ---
 
 static enum orl_result read_keyframe(const struct orl_known_source *source, const char *file,
@@ -25,7 +15,7 @@ static enum orl_result read_keyframe(const struct orl_known_source *source, cons
                                      struct orl_known_cameras *known)
 {
     static const char *const lens[] = {"fx", "fy", "cx", "cy"};
-    struct orl_known_camera camera = {.path = picture};
+    struct orl_known_camera camera = {.path = picture, .place = orl_path_name(file)};
     double f_c[4], rows[16] = {0};
     json_t *root = NULL;
     enum orl_result result = orl_json_read(source->log, file, &root);
@@ -38,15 +28,15 @@ static enum orl_result read_keyframe(const struct orl_known_source *source, cons
         good = orl_known_json_number(root, key, &rows[i]);
     }
     if (result == ORL_OK && (!good || !orl_pose_from_opengl(rows, &camera.pose)))
-        result = bad(source, orl_path_name(file), "fx, fy, cx, cy or the rows t_00 to t_23 are missing or "
-                                                  "not a pose");
+        result = orl_known_bad(source, camera.place, "fx, fy, cx, cy or the rows t_00 to t_23 are missing or "
+                                                     "not a pose");
     if (result == ORL_OK) {
-        f_c[2] += shift_of(source);
-        f_c[3] += shift_of(source);
+        f_c[2] += source->shift;
+        f_c[3] += source->shift;
         camera.width = orl_json_side(root, "width");
         camera.height = orl_json_side(root, "height");
         orl_known_set_lens(&camera, f_c, NULL, 0, false);
-        result = orl_known_add(source->log, source->path, orl_path_name(file), &camera, known);
+        result = orl_known_add(source, &camera, known);
     }
     orl_known_look_for_unused(unused, root);
     json_decref(root);
@@ -99,7 +89,7 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
     const json_t *lenses = json_object_get(source->root, "perFrameIntrinsicCoeffs");
     double k[9];
     if (!orl_json_read_numbers(json_object_get(source->root, "K"), 9, k))
-        return bad(source, "K", "not 9 numbers");
+        return orl_known_bad(source, "K", "not 9 numbers");
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < json_array_size(poses); i++) {
         char place[32], path[32];
@@ -107,24 +97,24 @@ enum orl_result orl_known_read_record3d(const struct orl_known_source *source,
         struct orl_pose turn;
         snprintf(place, sizeof place, "pose %zu", i);
         snprintf(path, sizeof path, "%s/%zu", folder, i);
-        struct orl_known_camera camera = {.path = path, .width = orl_json_side(source->root, "w"),
+        struct orl_known_camera camera = {.path = path, .place = place, .width = orl_json_side(source->root, "w"),
                                           .height = orl_json_side(source->root, "h")};
         if (!orl_json_read_numbers(json_array_get(poses, i), 7, v) ||
             !orl_pose_from_quat((double[]){v[3], v[0], v[1], v[2]}, (double[3]){0}, &turn))
-            return bad(source, place, "not a quaternion and a position");
+            return orl_known_bad(source, place, "not a quaternion and a position");
         for (int r = 0; r < 3; r++) {
             memcpy(rows + 4 * r, turn.r[r], sizeof turn.r[r]);
             rows[4 * r + 3] = v[4 + r];
         }
         if (!orl_pose_from_opengl(rows, &camera.pose))
-            return bad(source, place, "not a pose");
+            return orl_known_bad(source, place, "not a pose");
         // fx fy cx cy of each frame, where the telephone focuses anew.
         bool own = orl_json_read_numbers(json_array_get(lenses, i), 4, of_frame);
         const double f_c[4] = {own ? of_frame[0] : k[0], own ? of_frame[1] : k[4],
-                               (own ? of_frame[2] : k[6]) + shift_of(source),
-                               (own ? of_frame[3] : k[7]) + shift_of(source)};
+                               (own ? of_frame[2] : k[6]) + source->shift,
+                               (own ? of_frame[3] : k[7]) + source->shift};
         orl_known_set_lens(&camera, f_c, NULL, 0, false);
-        result = orl_known_add(source->log, source->path, place, &camera, known);
+        result = orl_known_add(source, &camera, known);
     }
     orl_known_say_unused_of(source, source->root, used, NULL);
     return result;

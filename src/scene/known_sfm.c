@@ -71,7 +71,7 @@ static enum orl_result read_shot(const struct orl_known_source *source, const js
                                  const char *name, const json_t *shot,
                                  struct orl_known_cameras *known)
 {
-    struct orl_known_camera camera = {.path = name};
+    struct orl_known_camera camera = {.path = name, .place = name};
     double axis[3];
     const char *lens = orl_json_text(shot, "camera");
     const json_t *found = lens ? json_object_get(cameras, lens) : NULL;
@@ -84,7 +84,7 @@ static enum orl_result read_shot(const struct orl_known_source *source, const js
         !orl_json_read_numbers(json_object_get(shot, "translation"), 3, camera.pose.t))
         return bad(source, "shot", name, "rotation or translation is not 3 numbers");
     rotation_about(axis, camera.pose.r);
-    return orl_known_add(source->log, source->path, name, &camera, known);
+    return orl_known_add(source, &camera, known);
 }
 
 static enum orl_result read_opensfm_points(const struct orl_known_source *source, json_t *points,
@@ -224,10 +224,10 @@ struct meshroom {
 static enum orl_result read_view(struct meshroom *m, const json_t *view,
                                  struct orl_known_cameras *known)
 {
-    struct orl_known_camera camera = {.path = orl_json_text(view, "path")};
     double axes[3][3], centre[3];
     const struct orl_known_source *source = m->source;
     const char *id = id_text(view, "viewId", (char[ID_BYTES]){""});
+    struct orl_known_camera camera = {.path = orl_json_text(view, "path"), .place = id};
     const char *pose_id = id_text(view, "poseId", (char[ID_BYTES]){""});
     const char *lens_id = id_text(view, "intrinsicId", (char[ID_BYTES]){""});
     const json_t *pose = json_object_get(m->poses, pose_id), *lens = json_object_get(m->lenses, lens_id);
@@ -248,7 +248,7 @@ static enum orl_result read_view(struct meshroom *m, const json_t *view,
         !orl_known_json_numbers(json_object_get(transform, "center"), 3, centre) ||
         !orl_pose_from_axes(axes, centre, &camera.pose))
         return bad(source, "pose", pose_id, "no rotation and center");
-    ORL_TRY(orl_known_add(source->log, source->path, id, &camera, known));
+    ORL_TRY(orl_known_add(source, &camera, known));
     json_t *index = json_integer((json_int_t)known->model.image_count - 1);
     return json_object_set_new(m->images, id, index) == 0 ? ORL_OK : ORL_ERR_MEMORY;
 }

@@ -33,9 +33,10 @@ static bool cut_numbers(char *line, double *values, size_t count)
     return end > line;
 }
 
-static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fixed[5],
+static enum orl_result read_nvm_camera(const struct orl_known_source *source, const double fixed[5],
                                        struct orl_known_cameras *known)
 {
+    struct orl_text_lines *l = source->lines;
     double v[10]; // focal length, quaternion w x y z, place, distortion, 0
     char place[64];
     snprintf(place, sizeof place, "line %zu", l->number);
@@ -44,7 +45,8 @@ static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fi
     for (char *c = l->at; *c; c++) // VisualSFM's way to write a space
         if (*c == '"')
             *c = ' ';
-    struct orl_known_camera camera = {.path = l->at, .gap = {.size = true, .centre = fixed[0] <= 0}};
+    struct orl_known_camera camera = {.path = l->at, .place = place,
+                                      .gap = {.size = true, .centre = fixed[0] <= 0}};
     if (!orl_pose_from_quat(v + 1, (double[3]){0}, &camera.pose))
         return orl_text_bad(l, "a camera's quaternion is zero or not finite");
     orl_pose_move(&camera.pose, (double[]){-v[5], -v[6], -v[7]});
@@ -54,7 +56,7 @@ static enum orl_result read_nvm_camera(struct orl_text_lines *l, const double fi
     double r = fixed[0] > 0 ? fixed[4] : v[8];
     const double terms[] = {-r, 3 * r * r, 0, 0, -12 * r * r * r};
     orl_known_set_lens(&camera, f_c, terms, ORL_COUNT(terms), false);
-    return orl_known_add(l->log, l->path, place, &camera, known);
+    return orl_known_add(source, &camera, known);
 }
 
 static enum orl_result read_nvm_point(struct orl_text_lines *l, struct orl_colmap_model *model)
@@ -86,7 +88,7 @@ enum orl_result orl_known_read_nvm(const struct orl_known_source *source,
         return orl_text_bad(l, "not the number of cameras");
     enum orl_result result = ORL_OK;
     for (uint64_t i = 0; result == ORL_OK && i < cameras; i++)
-        result = orl_text_next(l) ? read_nvm_camera(l, fixed, known)
+        result = orl_text_next(l) ? read_nvm_camera(source, fixed, known)
                                   : orl_text_bad(l, "fewer cameras than the file says");
     if (result == ORL_OK && orl_text_next(l) && !orl_text_id(l, UINT32_MAX - 1, &points))
         result = orl_text_bad(l, "not the number of points");
@@ -133,9 +135,10 @@ static bool find_pose(const double value[COLUMNS], struct orl_pose *pose)
 }
 
 // Lengths are those of a picture whose larger side is 36 mm, or 1 for the principal point, whatever its size.
-static enum orl_result read_row(struct orl_text_lines *l, const struct heads *heads,
+static enum orl_result read_row(const struct orl_known_source *source, const struct heads *heads,
                                 struct orl_known_cameras *known)
 {
+    struct orl_text_lines *l = source->lines;
     char *fields[FIELDS_MAX], place[64];
     double value[COLUMNS] = {0};
     const int *at = heads->at;
@@ -150,14 +153,14 @@ static enum orl_result read_row(struct orl_text_lines *l, const struct heads *he
     }
     if (value[K4] < 0 || value[K4] > 0)
         return orl_text_bad(l, "a lens with k4: export without it, or undistorted pictures");
-    struct orl_known_camera camera = {.path = at[NAME] < (int)count ? fields[at[NAME]] : "",
+    struct orl_known_camera camera = {.path = at[NAME] < (int)count ? fields[at[NAME]] : "", .place = place,
                                       .gap = {.size = true, .side = 1}};
     if (!find_pose(value, &camera.pose))
         return orl_text_bad(l, "a camera's place is absurdly far");
     const double f_c[4] = {value[F] / 36, value[F] / 36, value[PX], value[PY]};
     const double terms[] = {value[K1], value[K2], value[T1], value[T2], value[K3]};
     orl_known_set_lens(&camera, f_c, terms, ORL_COUNT(terms), false);
-    return orl_known_add(l->log, l->path, place, &camera, known);
+    return orl_known_add(source, &camera, known);
 }
 
 static enum orl_result read_heads(struct orl_text_lines *l, struct heads *heads)
@@ -190,6 +193,6 @@ enum orl_result orl_known_read_realityscan(const struct orl_known_source *source
     struct heads heads;
     ORL_TRY(read_heads(source->lines, &heads));
     while (orl_text_next(source->lines))
-        ORL_TRY(read_row(source->lines, &heads, known));
+        ORL_TRY(read_row(source, &heads, known));
     return ORL_OK;
 }

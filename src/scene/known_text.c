@@ -9,13 +9,14 @@
 
 // --- Middlebury: a count, then lines NAME K R t, row by row ---
 
-static enum orl_result read_par(struct orl_text_lines *l, double shift,
-                                struct orl_known_cameras *known)
+static enum orl_result read_par(const struct orl_known_source *source, struct orl_known_cameras *known)
 {
+    struct orl_text_lines *l = source->lines;
+    char place[64];
     double k[9];
-    struct orl_known_camera camera = {.path = l->at, .gap.size = true};
+    struct orl_known_camera camera = {.path = l->at, .place = place, .gap.size = true};
     l->at += strcspn(l->at, " \t");
-    char place[64], *end = l->at; // of the name
+    char *end = l->at; // of the name
     snprintf(place, sizeof place, "line %zu", l->number);
     if (!orl_text_numbers(l, k, 9) || !orl_text_numbers(l, &camera.pose.r[0][0], 9) ||
         !orl_text_numbers(l, camera.pose.t, 3))
@@ -23,8 +24,8 @@ static enum orl_result read_par(struct orl_text_lines *l, double shift,
     if (k[1] != 0)
         return orl_text_bad(l, "its K has a skew, which is not supported");
     *end = '\0';
-    orl_known_set_lens(&camera, (double[]){k[0], k[4], k[2] + shift, k[5] + shift}, NULL, 0, false);
-    return orl_known_add(l->log, l->path, place, &camera, known);
+    orl_known_set_lens(&camera, (double[]){k[0], k[4], k[2] + source->shift, k[5] + source->shift}, NULL, 0, false);
+    return orl_known_add(source, &camera, known);
 }
 
 enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
@@ -32,11 +33,10 @@ enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
 {
     struct orl_text_lines *l = source->lines;
     uint64_t count = 0;
-    double shift = 0.5 - (source->pixel_centre >= 0 ? source->pixel_centre : 0);
     if (!orl_text_next(l) || !orl_text_id(l, 1000000, &count) || *l->at)
         return orl_text_bad(l, "the first line is not the number of cameras");
     while (known->model.image_count < count && orl_text_next(l))
-        ORL_TRY(read_par(l, shift, known));
+        ORL_TRY(read_par(source, known));
     return known->model.image_count == count
                ? ORL_OK
                : orl_fail(l->log, ORL_ERR_FORMAT, "%s: line %zu: the file ends after %zu cameras of %llu", l->path,
@@ -46,7 +46,8 @@ enum orl_result orl_known_read_middlebury(const struct orl_known_source *source,
 // --- Bundler (bundle.out v0.3): cameras f k1 k2, R, t with OpenGL's axes; points ---
 
 struct bundler {
-    struct orl_text_lines *l;
+    const struct orl_known_source *source;
+    struct orl_text_lines *l;  // its lines
     struct orl_names pictures; // from list.txt
     uint64_t camera_count, point_count;
     // Index of each camera into the model's images; -1: not registered.
@@ -105,9 +106,9 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
                                            struct orl_known_cameras *known)
 {
     double f_k[3], r[3][3], t[3];
-    struct orl_known_camera camera = {.path = b->pictures.items[index],
-                                      .gap = {.size = true, .centre = true}};
     char place[64];
+    struct orl_known_camera camera = {.path = b->pictures.items[index], .place = place,
+                                      .gap = {.size = true, .centre = true}};
     enum orl_result result = next_numbers(b->l, f_k, 3, "a camera needs f k1 k2");
     snprintf(place, sizeof place, "line %zu: camera %zu", b->l->number, index);
     for (int i = 0; result == ORL_OK && i < 3; i++)
@@ -129,7 +130,7 @@ static enum orl_result read_bundler_camera(struct bundler *b, size_t index,
     camera.params[3] = f_k[1];
     camera.params[4] = f_k[2];
     b->image_of[index] = (int64_t)known->model.image_count;
-    return orl_known_add(b->l->log, b->l->path, place, &camera, known);
+    return orl_known_add(b->source, &camera, known);
 }
 
 enum orl_result orl_known_read_views(struct orl_text_lines *l, uint64_t camera_count,
@@ -191,7 +192,7 @@ static enum orl_result read_bundle(struct bundler *b, struct orl_known_cameras *
 enum orl_result orl_known_read_bundler(const struct orl_known_source *source,
                                        struct orl_known_cameras *known)
 {
-    struct bundler b = {.l = source->lines};
+    struct bundler b = {.source = source, .l = source->lines};
     enum orl_result result = read_list(source->log, known->folder, &b.pictures);
     ORL_THEN(result, read_bundle(&b, known));
     orl_names_finish(&b.pictures);

@@ -255,7 +255,7 @@ static enum orl_result add_cameras(const struct reader *r, struct orl_known_came
     for (size_t i = 0; i < r->camera_count; i++) {
         const struct camera *from = &r->cameras[i];
         const struct sensor *sensor = NULL;
-        struct orl_known_camera camera = {.path = from->label};
+        struct orl_known_camera camera = {.path = from->label, .place = from->label};
         unplaced += !from->placed;
         off += from->placed && !from->enabled;
         if (!from->placed || !from->enabled)
@@ -268,7 +268,7 @@ static enum orl_result add_cameras(const struct reader *r, struct orl_known_came
             problem = "its transform is not a pose";
         ORL_TRY(problem ? orl_fail(log, ORL_ERR_FORMAT, "%s: camera %.120s: %s", r->source->path, from->label,
                                    problem)
-                        : orl_known_add(log, r->source->path, from->label, &camera, known));
+                        : orl_known_add(r->source, &camera, known));
     }
     if (unplaced)
         orl_logf(log, ORL_LOG_WARNING, "%s: %zu of %zu cameras are not aligned: left out", r->source->path,
