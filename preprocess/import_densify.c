@@ -94,24 +94,19 @@ static enum orl_result leave_out_unconnected(struct orl_job *job, const struct p
 {
     struct orl_colmap_model model = {0};
     struct orl_database *db = NULL;
-    size_t connected = 0, all;
+    size_t kept = 0;
     enum orl_result result = orl_colmap_read(job->log, paths->in, &model);
     ORL_THEN(result, orl_database_open(job->log, paths->database, &db));
-    all = model.image_count;
-    for (size_t i = 0; result == ORL_OK && i < all; i++) {
-        const struct orl_colmap_image image = model.images[i];
-        bool is = false;
-        result = orl_database_is_connected(db, image.id, &is);
-        if (is) { // those that stay come first
-            model.images[i] = model.images[connected];
-            model.images[connected++] = image;
-        }
+    bool *connected = orl_array(job->log, model.image_count, sizeof *connected);
+    if (result == ORL_OK && !connected)
+        result = ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
+        result = orl_database_is_connected(db, model.images[i].id, &connected[i]);
+        kept += connected[i];
     }
-    if (result == ORL_OK && connected && connected < all) {
-        model.image_count = connected;
-        result = orl_colmap_write(job->log, paths->in, &model);
-        model.image_count = all;
-    }
+    if (result == ORL_OK && kept && kept < model.image_count)
+        result = orl_colmap_write(job->log, paths->in, &model, connected);
+    free(connected);
     orl_database_close(&db);
     orl_colmap_finish(&model);
     return result;

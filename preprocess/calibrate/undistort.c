@@ -41,7 +41,7 @@ static enum orl_result limit_cameras(const struct orl_job *job)
         }
     }
     if (result == ORL_OK && limited)
-        result = orl_colmap_write(job->log, dir, &model);
+        result = orl_colmap_write(job->log, dir, &model, NULL);
     orl_colmap_finish(&model);
     return result;
 }

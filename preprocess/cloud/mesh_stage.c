@@ -74,15 +74,12 @@ static enum orl_result write_train_model(struct orl_job *job, const char *to)
     const struct orl_colmap_model *model;
     ORL_TRY(orl_job_sparse(job, &model));
     ORL_TRY(orl_dir_make(job->log, to));
-    struct orl_colmap_model train = *model;
-    train.image_count = 0;
-    train.images = orl_array(job->log, model->image_count, sizeof *train.images);
-    ORL_TRY_MEMORY(train.images);
+    bool *keep = orl_array(job->log, model->image_count, sizeof *keep);
+    ORL_TRY_MEMORY(keep);
     for (size_t i = 0; i < model->image_count; i++)
-        if (!orl_job_find(job, model->images[i].name)->test)
-            train.images[train.image_count++] = model->images[i];
-    enum orl_result result = orl_colmap_write(job->log, to, &train);
-    free(train.images);
+        keep[i] = !orl_job_find(job, model->images[i].name)->test;
+    enum orl_result result = orl_colmap_write(job->log, to, model, keep);
+    free(keep);
     return result;
 }
 

@@ -55,7 +55,7 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
         }
         set_points(points, view->image->name, image);
     }
-    ORL_THEN(result, orl_colmap_write(job->log, dir, &model));
+    ORL_THEN(result, orl_colmap_write(job->log, dir, &model, NULL));
     free(model.cameras);
     free(model.images);
     return result;

@@ -55,9 +55,9 @@ enum orl_result orl_colmap_read_poses(const struct orl_log *log, const char *pat
                                       struct orl_colmap_model *model) ORL_CHECK_RESULT;
 void orl_colmap_finish(struct orl_colmap_model *model);
 // Writes cameras.bin, images.bin and points3D.bin into `dir`, which must exist. Observations are
-// written at the projections of their points.
-enum orl_result orl_colmap_write(const struct orl_log *log, const char *dir,
-                                 const struct orl_colmap_model *model) ORL_CHECK_RESULT;
+// written at the projections of their points. keep: of each image, whether it is written; NULL: all are.
+enum orl_result orl_colmap_write(const struct orl_log *log, const char *dir, const struct orl_colmap_model *model,
+                                 const bool *keep) ORL_CHECK_RESULT;
 // NULL when no camera has that id.
 const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_model *model,
                                                         uint32_t id);

@@ -27,9 +27,21 @@ struct track {
     uint32_t point, image_id, index;
 };
 
-static void put_cameras(FILE *out, const struct orl_colmap_model *model, const struct track *tracks)
+// What is written.
+struct writing {
+    const struct orl_colmap_model *model;
+    const bool *keep;     // see orl_colmap_write
+    struct track *tracks; // owned; by points, and one of no point behind them
+};
+
+static bool is_kept(const struct writing *w, size_t image)
 {
-    (void)tracks;
+    return !w->keep || w->keep[image];
+}
+
+static void put_cameras(FILE *out, const struct writing *w)
+{
+    const struct orl_colmap_model *model = w->model;
     put_u64(out, model->camera_count);
     for (size_t i = 0; i < model->camera_count; i++) {
         const struct orl_colmap_camera *camera = &model->cameras[i];
@@ -41,11 +53,16 @@ static void put_cameras(FILE *out, const struct orl_colmap_model *model, const s
     }
 }
 
-static void put_images(FILE *out, const struct orl_colmap_model *model, const struct track *tracks)
+static void put_images(FILE *out, const struct writing *w)
 {
-    (void)tracks;
-    put_u64(out, model->image_count);
+    const struct orl_colmap_model *model = w->model;
+    uint64_t count = 0;
+    for (size_t i = 0; i < model->image_count; i++)
+        count += is_kept(w, i);
+    put_u64(out, count);
     for (size_t i = 0; i < model->image_count; i++) {
+        if (!is_kept(w, i))
+            continue;
         const struct orl_colmap_image *image = &model->images[i];
         const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(model, image->camera_id);
         double quat[4];
@@ -69,25 +86,26 @@ static void put_images(FILE *out, const struct orl_colmap_model *model, const st
     }
 }
 
-// All observations by points, and one of no point behind them; NULL, logged, when memory runs out.
-static struct track *list_tracks(const struct orl_log *log, const struct orl_colmap_model *model)
+static enum orl_result list_tracks(const struct orl_log *log, struct writing *w)
 {
+    const struct orl_colmap_model *model = w->model;
     size_t total = 0, count = 0;
     for (size_t i = 0; i < model->image_count; i++)
         total += model->images[i].point_count;
-    struct track *tracks = orl_array(log, total + 1, sizeof *tracks);
-    for (size_t i = 0; tracks && i < model->image_count; i++)
-        for (size_t k = 0; k < model->images[i].point_count; k++)
-            tracks[count++] = (struct track){model->images[i].points[k], model->images[i].id, (uint32_t)k};
-    if (tracks) {
-        qsort(tracks, total, sizeof *tracks, orl_order_pairs);
-        tracks[total].point = UINT32_MAX;
-    }
-    return tracks;
+    w->tracks = orl_array(log, total + 1, sizeof *w->tracks);
+    ORL_TRY_MEMORY(w->tracks);
+    for (size_t i = 0; i < model->image_count; i++)
+        for (size_t k = 0; is_kept(w, i) && k < model->images[i].point_count; k++)
+            w->tracks[count++] = (struct track){model->images[i].points[k], model->images[i].id, (uint32_t)k};
+    qsort(w->tracks, count, sizeof *w->tracks, orl_order_pairs);
+    w->tracks[count].point = UINT32_MAX;
+    return ORL_OK;
 }
 
-static void put_points(FILE *out, const struct orl_colmap_model *model, const struct track *at)
+static void put_points(FILE *out, const struct writing *w)
 {
+    const struct orl_colmap_model *model = w->model;
+    const struct track *at = w->tracks;
     put_u64(out, model->point_count);
     for (uint32_t p = 0; p < model->point_count; p++) {
         const struct orl_colmap_point *point = &model->points[p];
@@ -107,23 +125,23 @@ static void put_points(FILE *out, const struct orl_colmap_model *model, const st
 }
 
 enum orl_result orl_colmap_write(const struct orl_log *log, const char *dir,
-                                 const struct orl_colmap_model *model)
+                                 const struct orl_colmap_model *model, const bool *keep)
 {
     static const struct {
         const char *name;
-        void (*put)(FILE *out, const struct orl_colmap_model *model, const struct track *tracks);
+        void (*put)(FILE *out, const struct writing *w);
     } files[] = {{"cameras.bin", put_cameras}, {"images.bin", put_images},
                  {"points3D.bin", put_points}};
-    struct track *tracks = list_tracks(log, model);
-    enum orl_result result = tracks ? ORL_OK : ORL_ERR_MEMORY;
+    struct writing w = {model, keep, NULL};
+    enum orl_result result = list_tracks(log, &w);
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++) {
         struct orl_atomic_file file;
         result = orl_atomic_open(log, ORL_PATH(dir, "%s", files[i].name), &file);
         if (result == ORL_OK) {
-            files[i].put(file.stream, model, tracks);
+            files[i].put(file.stream, &w);
             result = orl_atomic_commit(log, &file);
         }
     }
-    free(tracks);
+    free(w.tracks);
     return result;
 }

@@ -60,23 +60,6 @@ static enum orl_result write_points(const struct orl_subset *subset)
 
 // --- the sparse model ---
 
-// Writes the images of `all` that stay. They are listed in an array of their own, since `all` owns
-// the names of every image.
-static enum orl_result write_kept(const struct orl_subset *subset, const struct orl_colmap_model *all,
-                                  const char *sparse)
-{
-    struct orl_colmap_model kept = *all;
-    kept.image_count = 0;
-    kept.images = orl_array(subset->log, all->image_count, sizeof *kept.images);
-    ORL_TRY_MEMORY(kept.images);
-    for (size_t i = 0; i < all->image_count; i++)
-        if (subset->keep[i])
-            kept.images[kept.image_count++] = all->images[i];
-    enum orl_result result = orl_colmap_write(subset->log, sparse, &kept);
-    free(kept.images);
-    return result;
-}
-
 static enum orl_result write_model(const struct orl_subset *subset)
 {
     static const char *const files[] = {"sparse/cameras.bin", "sparse/images.bin", "sparse/points3D.bin"};
@@ -87,7 +70,7 @@ static enum orl_result write_model(const struct orl_subset *subset)
     // Photographs and the images of the model have equal indices.
     if (result == ORL_OK && all.image_count != subset->scene->photo_count)
         result = orl_fail(subset->log, ORL_ERR_DATA, "%s: its sparse model has changed", subset->scene->dir);
-    ORL_THEN(result, write_kept(subset, &all, sparse));
+    ORL_THEN(result, orl_colmap_write(subset->log, sparse, &all, subset->keep));
     for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(files); i++)
         result = orl_subset_add_checksum(subset, files[i]);
     orl_colmap_finish(&all);

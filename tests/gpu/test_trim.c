@@ -187,7 +187,7 @@ static void save_scene(const struct fixture *f)
     assert_int_equal(orl_dir_make(NULL, sparse), ORL_OK);
     const struct orl_colmap_model model = {.cameras = cameras, .camera_count = count,
                                            .images = images, .image_count = count};
-    assert_int_equal(orl_colmap_write(NULL, sparse, &model), ORL_OK);
+    assert_int_equal(orl_colmap_write(NULL, sparse, &model, NULL), ORL_OK);
     assert_int_equal(orl_points_write(NULL, points, &f->scene.points, false, NULL), ORL_OK);
     free(points);
     free(sparse);

@@ -181,7 +181,7 @@ static void writes_what_it_reads(void **state)
     save_model(dir, &f);
     assert_int_equal(orl_colmap_read(NULL, dir, &m), ORL_OK);
     m.points[2].position[2] = 0.5; // point 30, at (1, 2, 0.5): behind the cameras at z = 1
-    assert_int_equal(orl_colmap_write(NULL, dir, &m), ORL_OK);
+    assert_int_equal(orl_colmap_write(NULL, dir, &m, NULL), ORL_OK);
     orl_colmap_finish(&m);
     assert_int_equal(orl_colmap_read(NULL, dir, &m), ORL_OK);
     assert_float_equal(m.images[0].cam_from_world.t[0], 0.5, 1e-12);

@@ -221,7 +221,7 @@ static void writes_colmap(void **state)
     assert_int_equal(read(NULL, dir, NULL, -1, &known), ORL_OK);
     char *out = orl_path_join(NULL, dir, "out");
     assert_int_equal(orl_dir_make(NULL, out), ORL_OK);
-    assert_int_equal(orl_colmap_write(NULL, out, &known.model), ORL_OK);
+    assert_int_equal(orl_colmap_write(NULL, out, &known.model, NULL), ORL_OK);
     assert_int_equal(orl_colmap_read(NULL, out, &model), ORL_OK);
     assert_int_equal(model.image_count, 2);
     assert_string_equal(model.images[0].name, "a.jpg");

@@ -140,7 +140,7 @@ static void reads_models_without_points(void **state)
     save(w, "written/x", "");
     char *dir = test_path(w->dir, "written"), *points = test_path(dir, "points3D.bin");
     struct orl_colmap_model model;
-    assert_int_equal(orl_colmap_write(NULL, dir, &w->known.model), ORL_OK);
+    assert_int_equal(orl_colmap_write(NULL, dir, &w->known.model, NULL), ORL_OK);
     assert_int_equal(remove(points), 0);
     assert_int_equal(orl_colmap_read(NULL, dir, &model), ORL_OK);
     assert_int_equal(model.image_count, 1);
