@@ -13,13 +13,6 @@
 #include "core/memory.h"
 #include "oriel/scene.h"
 
-static void forget(struct orl_job_model *model)
-{
-    if (model->known)
-        orl_colmap_finish(&model->model);
-    model->known = false;
-}
-
 // --- the folder ---
 
 static enum orl_result fail_there(const struct orl_job *job)
@@ -84,10 +77,9 @@ enum orl_result orl_job_open(struct orl_job *job, const struct orl_log *log,
 enum orl_result orl_job_take_sources(struct orl_job *job)
 {
     struct orl_names train = {0};
-    enum orl_result result = orl_colmap_read(job->log, ORL_PATH(job->dir, "sparse"), &job->sparse.model);
-    job->sparse.known = result == ORL_OK;
+    const struct orl_colmap_model *model = &job->sparse;
+    enum orl_result result = orl_colmap_read(job->log, ORL_PATH(job->dir, "sparse"), &job->sparse);
     ORL_THEN(result, orl_file_read_names(job->log, ORL_PATH(job->dir, "stereo/fusion.cfg"), &train));
-    const struct orl_colmap_model *model = &job->sparse.model;
     if (result == ORL_OK)
         job->sources = orl_array(job->log, model->image_count + 1, sizeof *job->sources);
     if (result == ORL_OK && !job->sources)
@@ -142,8 +134,8 @@ void orl_job_close(struct orl_job *job)
         orl_source_finish(&job->sources[i]);
     free(job->sources);
     orl_exposure_list_finish(&job->exposures);
-    forget(&job->calibrated);
-    forget(&job->sparse);
+    orl_colmap_finish(&job->calibrated);
+    orl_colmap_finish(&job->sparse);
     json_decref(job->skipped);
     json_decref(job->stages);
     json_decref(job->programs);
@@ -272,30 +264,29 @@ enum orl_exposure_source orl_source_exposure(const struct orl_job *job,
 }
 
 static enum orl_result read_model(const struct orl_job *job, const char *name,
-                                  struct orl_job_model *model)
+                                  struct orl_colmap_model *model)
 {
-    if (model->known)
+    if (model->image_count)
         return ORL_OK;
-    enum orl_result result = orl_colmap_read(job->log, ORL_PATH(job->dir, "%s", name), &model->model);
-    model->known = result == ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < model->model.image_count; i++)
-        if (!orl_job_find(job, model->model.images[i].name))
+    enum orl_result result = orl_colmap_read(job->log, ORL_PATH(job->dir, "%s", name), model);
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
+        if (!orl_job_find(job, model->images[i].name))
             result = orl_fail(job->log, ORL_ERR_DATA, "%s/%s: photograph %s was not given",
-                              job->dir, name, model->model.images[i].name);
+                              job->dir, name, model->images[i].name);
     if (result != ORL_OK)
-        forget(model);
+        orl_colmap_finish(model);
     return result;
 }
 
 enum orl_result orl_job_calibrated(struct orl_job *job, const struct orl_colmap_model **model)
 {
-    *model = &job->calibrated.model;
+    *model = &job->calibrated;
     return read_model(job, ".oriel/calibrate/model", &job->calibrated);
 }
 
 enum orl_result orl_job_sparse(struct orl_job *job, const struct orl_colmap_model **model)
 {
-    *model = &job->sparse.model;
+    *model = &job->sparse;
     return read_model(job, "sparse", &job->sparse);
 }
 
@@ -315,15 +306,15 @@ enum orl_result orl_job_open_scene(struct orl_job *job, struct orl_scene **scene
 enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
                                    const struct orl_colmap_model **model)
 {
-    forget(&job->sparse);
-    *model = &job->sparse.model;
+    orl_colmap_finish(&job->sparse);
+    *model = &job->sparse;
     return read_model(job, name, &job->sparse);
 }
 
 void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model)
 {
-    forget(&job->calibrated);
-    job->calibrated = (struct orl_job_model){*model, true};
+    orl_colmap_finish(&job->calibrated);
+    job->calibrated = *model;
     *model = (struct orl_colmap_model){0};
 }
 

@@ -49,12 +49,6 @@ struct orl_source {
     bool unbounded; // floating point without a fixed white
 };
 
-// A sparse model, read once.
-struct orl_job_model {
-    struct orl_colmap_model model;
-    bool known;
-};
-
 struct orl_job {
     const struct orl_log *log;
     const struct orl_progress *progress;
@@ -68,8 +62,9 @@ struct orl_job {
     size_t given;    // number of photographs found, readable or not
     json_t *skipped; // owned; [{"name", "why"}]
     json_t *stages;  // owned; .oriel/stages.json
-    struct orl_job_model calibrated; // .oriel/calibrate/model, see orl_job_calibrated
-    struct orl_job_model sparse;     // SCENE/sparse, see orl_job_sparse
+    // Sparse models; without images: not read yet.
+    struct orl_colmap_model calibrated; // .oriel/calibrate/model, see orl_job_calibrated
+    struct orl_colmap_model sparse;     // SCENE/sparse, see orl_job_sparse
     // COLMAP, once orl_job_find_colmap has been called.
     const char *colmap;
     char colmap_version[64];

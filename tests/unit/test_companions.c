@@ -68,8 +68,8 @@ static void undistorts_masks(void **state)
     orl_image_finish(&image);
     snprintf(path, sizeof path, "%s/masks/b.png.png", dir);
     assert_false(orl_path_is_file(path));
-    orl_colmap_finish(&job.calibrated.model);
-    orl_colmap_finish(&job.sparse.model);
+    orl_colmap_finish(&job.calibrated);
+    orl_colmap_finish(&job.sparse);
     test_dir_remove(dir);
 }
 
@@ -106,8 +106,8 @@ static void undistorts_photographs(void **state)
                 assert_float_equal(image.u8[3 * k + c], (k / W % 2 ? red : blue)[c], 8);
         orl_image_finish(&image);
     }
-    orl_colmap_finish(&job.calibrated.model);
-    orl_colmap_finish(&job.sparse.model);
+    orl_colmap_finish(&job.calibrated);
+    orl_colmap_finish(&job.sparse);
     test_dir_remove(dir);
 }
 
