@@ -12,7 +12,7 @@ struct series {
     size_t count;            // number of photographs in use
     float ev;                // their exposure, in stops above the scene's middle
     bool *skip;              // per photograph: not of this series, or skipped for a view
-    float (*response)[256];  // linear exposure of 8-bit values; owned; NULL: sRGB
+    const float (*response)[256]; // of the scene: linear exposure of 8-bit values; NULL: sRGB
 };
 
 struct series_set {

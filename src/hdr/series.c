@@ -41,12 +41,8 @@ static enum orl_result add_photo(const struct orl_log *log, struct series_set *s
         s->number = photo->series;
         s->skip = orl_array(log, set->scene.photo_count, sizeof *s->skip);
         ORL_TRY_MEMORY(s->skip);
-        if (photo->response >= 0) {
-            s->response = orl_array(log, 3, sizeof *s->response);
-            ORL_TRY_MEMORY(s->response);
-            memcpy(s->response, set->scene.responses[photo->response].linear,
-                   3 * sizeof *s->response);
-        }
+        if (photo->response >= 0)
+            s->response = (const float (*)[256])set->scene.responses[photo->response].linear;
     }
     s->ev += (float)photo_ev(photo);
     s->count++;
@@ -86,10 +82,8 @@ enum orl_result orl_series_init(struct orl_gpu *gpu, const struct orl_scene *sce
 void orl_series_finish(struct series_set *set)
 {
     orl_renderer_destroy(&set->renderer);
-    for (size_t k = 0; k < set->count; k++) {
+    for (size_t k = 0; k < set->count; k++)
         free(set->items[k].skip);
-        free(set->items[k].response);
-    }
     free(set->items);
     free(set->scene.photos);
     memset(set, 0, sizeof *set);
