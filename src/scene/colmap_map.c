@@ -6,24 +6,16 @@
 #include "core/file.h"
 #include "scene/colmap.h"
 
-// Room for three numbers, each with its '&'.
-enum { HEADER_MAX = 48 };
-
-// Length of the header, 0 when it is damaged.
-static size_t parse_header(const uint8_t *data, size_t size, unsigned long dims[3])
+// Length of the header, 0 when it is damaged. A zero byte follows the data.
+static size_t parse_header(const uint8_t *data, unsigned long dims[3])
 {
-    size_t at = 0;
-    for (int i = 0; i < 3; i++) {
-        size_t start = at;
-        dims[i] = 0;
-        while (at < size && at < HEADER_MAX && data[at] >= '0' && data[at] <= '9' &&
-               dims[i] <= ORL_IMAGE_MAX_SIDE)
-            dims[i] = 10 * dims[i] + (unsigned long)(data[at++] - '0');
-        if (at == start || at >= size || data[at] != '&')
-            return 0;
-        at++;
-    }
-    return at;
+    char number[3][16];
+    int length = 0;
+    if (sscanf((const char *)data, "%15[0-9]&%15[0-9]&%15[0-9]&%n", number[0], number[1], number[2], &length) < 3)
+        return 0;
+    for (int i = 0; i < 3; i++)
+        dims[i] = strtoul(number[i], NULL, 10);
+    return (size_t)length;
 }
 
 enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
@@ -34,7 +26,7 @@ enum orl_result orl_colmap_map_read(const struct orl_log *log, const char *path,
     size_t size;
     ORL_TRY(orl_file_read(log, path, SIZE_MAX / 2, &data, &size));
     unsigned long dims[3] = {0};
-    size_t header = parse_header(data, size, dims);
+    size_t header = parse_header(data, dims);
     bool sound = header && dims[0] >= 1 && dims[1] >= 1 && dims[2] >= 1 && dims[0] <= ORL_IMAGE_MAX_SIDE &&
                  dims[1] <= ORL_IMAGE_MAX_SIDE && dims[2] <= 4;
     size_t pixels = sound ? dims[0] * dims[1] : 0, expected = pixels * dims[2] * sizeof(float); // at most 2^36
