@@ -30,12 +30,19 @@ static float logit(float opacity)
     return logf(opacity / (1 - opacity));
 }
 
-static enum orl_result grow(const struct orl_log *log, struct orl_soft_model *model, float **values)
+enum orl_result orl_soft_add(const struct orl_log *log, struct orl_soft_model *model, const double place[3],
+                             double sigma, float opacity, const float rgb[3])
 {
     ORL_TRY(ORL_GROW(log, model->splats, model->capacity, model->count));
-    *values = model->splats[model->count++];
-    memset(*values, 0, sizeof *model->splats);
-    (*values)[ORL_SOFT_TURN] = 1;
+    float *s = model->splats[model->count++];
+    memset(s, 0, sizeof *model->splats);
+    s[ORL_SOFT_TURN] = 1;
+    s[ORL_SOFT_OPACITY] = logit(opacity);
+    for (int k = 0; k < 3; k++) {
+        s[ORL_SOFT_PLACE + k] = (float)place[k];
+        s[ORL_SOFT_SIGMA + k] = logarithm(sigma);
+        s[ORL_SOFT_COLOR + k] = (float)(((double)rgb[k] - 0.5) / ORL_HARMONIC_0);
+    }
     return ORL_OK;
 }
 
@@ -49,18 +56,14 @@ static void turn_to(const float n[3], float q[4])
 }
 
 // Adds a flat splat.
-static enum orl_result add_disc(const struct orl_log *log, struct orl_soft_model *model, const float place[3],
+static enum orl_result add_disc(const struct orl_log *log, struct orl_soft_model *model, const double place[3],
                                 const float normal[3], double sigma, const float rgb[3])
 {
-    float *s;
-    ORL_TRY(grow(log, model, &s));
-    memcpy(s + ORL_SOFT_PLACE, place, 3 * sizeof *place);
+    ORL_TRY(orl_soft_add(log, model, place, sigma, 0.5f, rgb));
+    float *s = model->splats[model->count - 1];
     s[ORL_SOFT_OPACITY] = DISC_LOGIT;
-    s[ORL_SOFT_SIGMA] = s[ORL_SOFT_SIGMA + 1] = logarithm(sigma);
     s[ORL_SOFT_SIGMA + 2] = logarithm(THIN * sigma);
     turn_to(normal, s + ORL_SOFT_TURN);
-    for (int c = 0; c < 3; c++)
-        s[ORL_SOFT_COLOR + c] = (float)(((double)rgb[c] - 0.5) / ORL_HARMONIC_0);
     return ORL_OK;
 }
 
@@ -78,9 +81,12 @@ enum orl_result orl_soft_from_points(const struct orl_log *log, const struct orl
         if (orl_soft_random(&state) * every >= 1 || !(points->radius[i] > 0))
             continue;
         float rgb[3];
-        for (int c = 0; c < 3; c++)
-            rgb[c] = (float)points->color[i][c] / 255;
-        ORL_TRY(add_disc(log, model, points->position[i], points->normal[i],
+        double place[3];
+        for (int k = 0; k < 3; k++) {
+            rgb[k] = (float)points->color[i][k] / 255;
+            place[k] = (double)points->position[i][k];
+        }
+        ORL_TRY(add_disc(log, model, place, points->normal[i],
                          SIGMA * sqrt(every) * (double)points->radius[i], rgb));
     }
     return ORL_OK;
@@ -117,30 +123,13 @@ enum orl_result orl_soft_from_mesh(const struct orl_log *log, const struct orl_m
         for (double n = floor(own + orl_soft_random(&state)); n >= 1; n--) {
             double u = sqrt(orl_soft_random(&state)), v = orl_soft_random(&state); // uniform over the triangle
             const double weights[3] = {1 - u, u * (1 - v), u * v};
-            float place[3];
-            for (int k = 0; k < 3; k++) {
-                double sum = 0;
+            double place[3] = {0};
+            for (int k = 0; k < 3; k++)
                 for (int j = 0; j < 3; j++)
-                    sum += weights[j] * (double)mesh->position[mesh->triangle[i][j]][k];
-                place[k] = (float)sum;
-            }
+                    place[k] += weights[j] * (double)mesh->position[mesh->triangle[i][j]][k];
             ORL_TRY(add_disc(log, model, place, normal, SIGMA * sqrt(whole / count), grey));
         }
     }
-    return ORL_OK;
-}
-
-enum orl_result orl_soft_add(const struct orl_log *log, struct orl_soft_model *model, const double place[3],
-                             double sigma, float opacity, const float rgb[3])
-{
-    float *s;
-    ORL_TRY(grow(log, model, &s));
-    for (int k = 0; k < 3; k++) {
-        s[ORL_SOFT_PLACE + k] = (float)place[k];
-        s[ORL_SOFT_SIGMA + k] = logarithm(sigma);
-        s[ORL_SOFT_COLOR + k] = (float)(((double)rgb[k] - 0.5) / ORL_HARMONIC_0);
-    }
-    s[ORL_SOFT_OPACITY] = logit(opacity);
     return ORL_OK;
 }
 
