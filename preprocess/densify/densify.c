@@ -18,15 +18,7 @@ enum {
     LEVELS_MAX = 9, // pyramid levels of the reference; sources that show the scene finer have more
     COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
     GEOMETRIC_PASSES_MAX = 8,
-    PASSES_MAX = GEOMETRIC_PASSES_MAX + 1,
     SPECKLE_SHARE = 2000, // connected pieces smaller than pixels / SPECKLE_SHARE are dropped
-};
-
-// One pass over the photographs. It reads the maps of the previous pass and writes its own, both in
-// stereo/*_maps/NAME.KIND.bin.
-struct pass {
-    char kind[ORL_DENSIFY_KIND_SIZE];
-    bool geometric; // uses the sources' depths from the previous pass
 };
 
 struct densifier {
@@ -41,8 +33,6 @@ struct densifier {
     struct densify_photos photos;
     struct densify_plan *plans;
     struct densify_cache cache;
-    struct pass passes[PASSES_MAX];
-    int pass_count;
     double done, total;
     int lock_fd;
 };
@@ -71,15 +61,35 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
     return ORL_OK;
 }
 
+// --- passes ---
+
+// A pass over the photographs, from 0 on, reads the maps of the previous pass and writes its own, both in
+// stereo/*_maps/NAME.KIND.bin. All but the first are geometric: they use the sources' depths from the previous pass.
+
+const char *orl_densify_pass_kind(int pass, int geometric_passes, char kind[ORL_DENSIFY_KIND_SIZE])
+{
+    if (pass > 0 && pass < geometric_passes)
+        snprintf(kind, ORL_DENSIFY_KIND_SIZE, "agreed-%d", pass);
+    else
+        snprintf(kind, ORL_DENSIFY_KIND_SIZE, "%s", pass ? "geometric" : "photometric");
+    return kind;
+}
+
+static bool is_last(const struct densifier *d, int pass)
+{
+    return pass == d->params.geometric_passes;
+}
+
 // --- files ---
 
 #define PHOTO_PATH(d, photo) ORL_PATH((d)->workspace, "images/%s", densify_photo_name(&(d)->photos, photo))
 // maps: depth, normal or confidence
 #define MAP_PATH(d, maps, photo, pass) \
-    ORL_PATH((d)->workspace, "stereo/%s_maps/%s.%s.bin", maps, densify_photo_name(&(d)->photos, photo), (pass)->kind)
+    ORL_PATH((d)->workspace, "stereo/%s_maps/%s.%s.bin", maps, densify_photo_name(&(d)->photos, photo), \
+             orl_densify_pass_kind(pass, (d)->params.geometric_passes, (char[ORL_DENSIFY_KIND_SIZE]){""}))
 
-static enum orl_result write_map(const struct densifier *d, const char *maps, size_t photo,
-                                 const struct pass *pass, const struct orl_image *map)
+static enum orl_result write_map(const struct densifier *d, const char *maps, size_t photo, int pass,
+                                 const struct orl_image *map)
 {
     const char *path = MAP_PATH(d, maps, photo, pass);
     // A photograph's name may contain folders.
@@ -87,8 +97,8 @@ static enum orl_result write_map(const struct densifier *d, const char *maps, si
     return orl_colmap_map_write(d->log, path, map);
 }
 
-static enum orl_result read_map(const struct densifier *d, const char *maps, size_t photo,
-                                const struct pass *pass, int channels, struct orl_image *map)
+static enum orl_result read_map(const struct densifier *d, const char *maps, size_t photo, int pass, int channels,
+                                struct orl_image *map)
 {
     const char *path = MAP_PATH(d, maps, photo, pass);
     enum orl_result result = orl_colmap_map_read(d->log, path, map);
@@ -101,16 +111,16 @@ static enum orl_result read_map(const struct densifier *d, const char *maps, siz
 }
 
 // The depth map is written last: a photograph with a depth map has all of its maps.
-static enum orl_result write_maps(const struct densifier *d, size_t photo,
-                                  const struct pass *pass, const struct densify_maps *maps)
+static enum orl_result write_maps(const struct densifier *d, size_t photo, int pass,
+                                  const struct densify_maps *maps)
 {
     ORL_TRY(write_map(d, "normal", photo, pass, &maps->normal));
-    if (pass == &d->passes[d->pass_count - 1])
+    if (is_last(d, pass))
         ORL_TRY(write_map(d, "confidence", photo, pass, &maps->confidence));
     return write_map(d, "depth", photo, pass, &maps->depth);
 }
 
-static bool has_maps(const struct densifier *d, size_t photo, const struct pass *pass)
+static bool has_maps(const struct densifier *d, size_t photo, int pass)
 {
     return orl_path_is_file(MAP_PATH(d, "depth", photo, pass)) && orl_path_is_file(MAP_PATH(d, "normal", photo, pass));
 }
@@ -210,16 +220,15 @@ static enum orl_result check_size(const struct densifier *d, const char *name,
                     "%s: its maps are of another size; remove them to have them made again", name);
 }
 
-static enum orl_result read_source_depth(const struct densifier *d, const struct pass *before,
-                                         size_t photo, int slot, struct densify_job *job)
+static enum orl_result read_source_depth(const struct densifier *d, int before, size_t photo, int slot,
+                                         struct densify_job *job)
 {
     struct orl_image *depth = &job->source_depths[slot];
     ORL_TRY(read_map(d, "depth", photo, before, 1, depth));
     return check_size(d, densify_photo_name(&d->photos, photo), job->sources[slot], depth);
 }
 
-static enum orl_result job_open(struct densifier *d, size_t photo, const struct pass *pass,
-                                struct densify_job *job)
+static enum orl_result job_open(struct densifier *d, size_t photo, int pass, struct densify_job *job)
 {
     const struct densify_plan *plan = &d->plans[photo];
     *job = (struct densify_job){
@@ -228,8 +237,8 @@ static enum orl_result job_open(struct densifier *d, size_t photo, const struct 
         .view = d->photos.views[photo],
         .plan = plan,
         .finest = d->shrink,
-        .draw = (int)(pass - d->passes),
-        .last = pass == &d->passes[d->pass_count - 1],
+        .draw = pass,
+        .last = is_last(d, pass),
         .progress = d->progress,
         .done = d->done,
         .total = d->total,
@@ -237,24 +246,23 @@ static enum orl_result job_open(struct densifier *d, size_t photo, const struct 
     d->cache.turn++;
     ORL_TRY(orl_densify_cache_get(&d->cache, photo, &job->reference));
     job->levels = level_count(job->reference->levels[0].width, job->reference->levels[0].height);
-    if (pass->geometric || job->levels <= d->shrink)
+    if (pass || job->levels <= d->shrink)
         job->levels = d->shrink + 1;
     for (int k = 0; k < plan->count; k++) {
         size_t source = plan->sources[k].photo;
         job->source_views[k] = d->photos.views[source];
         ORL_TRY(orl_densify_cache_get(&d->cache, source, &job->sources[k]));
-        if (pass->geometric)
-            ORL_TRY(read_source_depth(d, &pass[-1], source, k, job));
+        if (pass)
+            ORL_TRY(read_source_depth(d, pass - 1, source, k, job));
     }
     ORL_TRY(read_mask(d, job));
-    if (!pass->geometric)
+    if (!pass)
         ORL_TRY(make_seeds(d, photo, job));
     return ORL_OK;
 }
 
 // Writes maps without depth for a photograph that has no sources.
-static enum orl_result write_empty(const struct densifier *d, size_t photo,
-                                   const struct pass *pass)
+static enum orl_result write_empty(const struct densifier *d, size_t photo, int pass)
 {
     struct densify_maps maps = {0};
     int width, height;
@@ -266,9 +274,8 @@ static enum orl_result write_empty(const struct densifier *d, size_t photo,
     return result;
 }
 
-static enum orl_result read_start(const struct densifier *d, size_t photo,
-                                  const struct pass *before, const struct densify_job *job,
-                                  struct densify_maps *start)
+static enum orl_result read_start(const struct densifier *d, size_t photo, int before,
+                                  const struct densify_job *job, struct densify_maps *start)
 {
     ORL_TRY(read_map(d, "depth", photo, before, 1, &start->depth));
     ORL_TRY(read_map(d, "normal", photo, before, 3, &start->normal));
@@ -287,17 +294,17 @@ static enum orl_result clean(const struct densifier *d, const struct densify_job
     return orl_densify_complete(d->log, job, maps);
 }
 
-static enum orl_result process(struct densifier *d, size_t photo, const struct pass *pass)
+static enum orl_result process(struct densifier *d, size_t photo, int pass)
 {
     const struct densify_device device = {d->gpu, &d->params};
     struct densify_maps start = {0}, maps = {0};
     struct densify_job job;
     enum orl_result result = job_open(d, photo, pass, &job);
     job.start = &start;
-    if (pass->geometric)
-        ORL_THEN(result, read_start(d, photo, &pass[-1], &job, &start));
-    ORL_THEN(result, pass->geometric ? orl_densify_geometric(&device, &job, &maps)
-                                     : orl_densify_photometric(&device, &job, &maps));
+    if (pass)
+        ORL_THEN(result, read_start(d, photo, pass - 1, &job, &start));
+    ORL_THEN(result, pass ? orl_densify_geometric(&device, &job, &maps)
+                          : orl_densify_photometric(&device, &job, &maps));
     if (job.last)
         ORL_THEN(result, clean(d, &job, &maps));
     ORL_THEN(result, write_maps(d, photo, pass, &maps));
@@ -324,7 +331,7 @@ static size_t end_photo(const struct densifier *d)
     return d->params.part ? part_begin(d, d->params.part->index + 1) : d->photos.count;
 }
 
-static enum orl_result process_all(struct densifier *d, const struct pass *pass)
+static enum orl_result process_all(struct densifier *d, int pass)
 {
     for (size_t i = first_photo(d); i < end_photo(d); i++) {
         const char *name = densify_photo_name(&d->photos, i);
@@ -333,7 +340,7 @@ static enum orl_result process_all(struct densifier *d, const struct pass *pass)
             return ORL_ERR_CANCELLED;
         orl_progress_report(d->progress, "densify", d->done, d->total, name);
         if (!has && !d->plans[i].count) {
-            if (!pass->geometric)
+            if (!pass)
                 orl_logf(d->log, ORL_LOG_WARNING,
                          "%s: too little in common with the other photographs; no depth", name);
             ORL_TRY(write_empty(d, i, pass));
@@ -346,48 +353,29 @@ static enum orl_result process_all(struct densifier *d, const struct pass *pass)
     return ORL_OK;
 }
 
-// --- passes ---
-
-void orl_densify_pass_kind(int pass, int geometric_passes, char kind[ORL_DENSIFY_KIND_SIZE])
-{
-    if (pass > 0 && pass < geometric_passes)
-        snprintf(kind, ORL_DENSIFY_KIND_SIZE, "agreed-%d", pass);
-    else
-        snprintf(kind, ORL_DENSIFY_KIND_SIZE, "%s", pass ? "geometric" : "photometric");
-}
-
-static void plan_passes(struct densifier *d)
-{
-    int agreeing = d->params.geometric_passes;
-    d->pass_count = agreeing + 1;
-    for (int i = 0; i < d->pass_count; i++) {
-        struct pass *pass = &d->passes[i];
-        pass->geometric = i > 0;
-        orl_densify_pass_kind(i, agreeing, pass->kind);
-    }
-    size_t count = end_photo(d) - first_photo(d);
-    d->total = (double)count * (d->params.part ? 1 : d->pass_count);
-}
+// --- all of it ---
 
 // Removes the maps between the first and the last pass, which are not needed after the run.
 static void remove_intermediate(const struct densifier *d)
 {
     for (size_t i = 0; i < d->photos.count; i++)
-        for (int p = 1; p < d->pass_count - 1; p++) {
-            remove(MAP_PATH(d, "depth", i, &d->passes[p]));
-            remove(MAP_PATH(d, "normal", i, &d->passes[p]));
+        for (int p = 1; p < d->params.geometric_passes; p++) {
+            remove(MAP_PATH(d, "depth", i, p));
+            remove(MAP_PATH(d, "normal", i, p));
         }
 }
 
 static enum orl_result process_passes(struct densifier *d)
 {
+    const struct orl_densify_part *part = d->params.part;
+    const int passes = d->params.geometric_passes + 1;
     bool all = true;
     for (size_t i = first_photo(d); i < end_photo(d) && all; i++)
-        all = has_maps(d, i, &d->passes[d->pass_count - 1]);
-    const struct orl_densify_part *part = d->params.part;
-    for (int p = 0; p < d->pass_count && !all; p++)
+        all = has_maps(d, i, passes - 1);
+    d->total = (double)(end_photo(d) - first_photo(d)) * (part ? 1 : passes);
+    for (int p = 0; p < passes && !all; p++)
         if (!part || p == part->pass)
-            ORL_TRY(process_all(d, &d->passes[p]));
+            ORL_TRY(process_all(d, p));
     // Other parts may still read the maps between the passes.
     if (!part)
         remove_intermediate(d);
@@ -490,7 +478,6 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                           .progress = progress, .workspace = workspace, .lock_fd = -1};
     d.cache = (struct densify_cache){d.log, &d.photos, ORL_PATH(workspace, "images"), NULL, 0, 0};
     enum orl_result result = open_densifier(&d, photos);
-    plan_passes(&d);
     ORL_THEN(result, process_passes(&d));
     close_densifier(&d);
     return result;

@@ -60,9 +60,9 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
                             const struct orl_densify_params *params,
                             const struct orl_progress *progress) ORL_CHECK_RESULT;
 
-// The ending of a pass's maps, NAME.KIND.bin.
+// The ending of a pass's maps, NAME.KIND.bin; returns `kind`.
 enum { ORL_DENSIFY_KIND_SIZE = 24 };
-void orl_densify_pass_kind(int pass, int geometric_passes, char kind[ORL_DENSIFY_KIND_SIZE]);
+const char *orl_densify_pass_kind(int pass, int geometric_passes, char kind[ORL_DENSIFY_KIND_SIZE]);
 // Of `parts` parts of the photographs: which read maps of which. reads[a * parts + b] is set where
 // a photograph of part a has a source in part b.
 enum orl_result orl_densify_part_sources(const struct orl_log *log,
