@@ -1,16 +1,19 @@
 // Undistort: pinhole photographs and the sparse model that belongs to them.
-#include <stdio.h>
+#include <math.h>
 
 #include "preprocess/calibrate/companions.h"
 #include "preprocess/job/colmap_run.h"
 
 #define WORK ".oriel/undistort.tmp"
 
+// Of COLMAP's output the cameras alone count: Oriel makes the pictures itself, and COLMAP, which finds no photographs
+// in an empty folder, makes none.
 static enum orl_result run_undistorter(struct orl_job *job)
 {
     struct orl_colmap_run run = {.command = "image_undistorter", .step = "undistort"};
     ORL_TRY(orl_job_fresh_dir(job, WORK));
-    orl_colmap_arg(&run, "--image_path", "%s/.oriel/photos", job->dir);
+    ORL_TRY(orl_job_fresh_dir(job, WORK "/none"));
+    orl_colmap_arg(&run, "--image_path", "%s/" WORK "/none", job->dir);
     orl_colmap_arg(&run, "--input_path", "%s/.oriel/calibrate/model", job->dir);
     orl_colmap_arg(&run, "--output_path", "%s/" WORK, job->dir);
     orl_colmap_arg(&run, "--max_image_size", "%d", orl_prepare_max_size(job->params));
@@ -18,7 +21,7 @@ static enum orl_result run_undistorter(struct orl_job *job)
 }
 
 // COLMAP makes all pictures as small as it is told, but leaves cameras whose distortion is exactly zero
-// as large as they were: these get the size of their pictures, for which it rounds in a way of its own.
+// as large as they were: these get the size that their pictures would have.
 static enum orl_result limit_cameras(const struct orl_job *job)
 {
     struct orl_colmap_model model = {0};
@@ -26,19 +29,16 @@ static enum orl_result limit_cameras(const struct orl_job *job)
     const char *dir = ORL_PATH(job->dir, WORK "/sparse");
     bool limited = false;
     enum orl_result result = orl_colmap_read(job->log, dir, &model);
-    for (size_t i = 0; result == ORL_OK && i < model.image_count; i++) {
-        const struct orl_colmap_camera *large = orl_colmap_camera_by_id(&model, model.images[i].camera_id);
-        const struct orl_camera *c = &large->pinhole;
-        int width, height;
-        if (c->width <= most && c->height <= most)
+    for (size_t i = 0; result == ORL_OK && i < model.camera_count; i++) {
+        struct orl_colmap_camera *camera = &model.cameras[i];
+        const struct orl_camera *c = &camera->pinhole;
+        double scale = fmin((double)most / c->width, (double)most / c->height);
+        if (scale >= 1)
             continue;
-        result = orl_picture_size(job->log, ORL_PATH(job->dir, WORK "/images/%s", model.images[i].name), &width,
-                                  &height);
-        if (result == ORL_OK) {
-            const struct orl_camera small = orl_camera_resized(c, width, height);
-            model.cameras[large - model.cameras] = orl_colmap_pinhole(large->id, &small);
-            limited = true;
-        }
+        const struct orl_camera small = orl_camera_resized(c, (int)round(scale * c->width),
+                                                           (int)round(scale * c->height));
+        *camera = orl_colmap_pinhole(camera->id, &small);
+        limited = true;
     }
     if (result == ORL_OK && limited)
         result = orl_colmap_write(job->log, dir, &model, NULL);
@@ -46,7 +46,6 @@ static enum orl_result limit_cameras(const struct orl_job *job)
     return result;
 }
 
-// Of COLMAP's output the cameras count: Oriel makes the pictures itself.
 static enum orl_result check_cameras(const struct orl_job *job,
                                      const struct orl_colmap_model *model, json_t *record)
 {
