@@ -258,15 +258,16 @@ enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide)
 
 // --- databases of parts ---
 
+// Runs the first statement only: a file from elsewhere may hold others behind it, such as ATTACH.
 static enum orl_result run_with_text(struct orl_database *db, const char *sql, const char *first,
                                      const char *second)
 {
     sqlite3_stmt *statement = NULL;
     bool done = sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK &&
-                sqlite3_bind_text(statement, 1, first, -1, SQLITE_STATIC) == SQLITE_OK &&
+                (!first || sqlite3_bind_text(statement, 1, first, -1, SQLITE_STATIC) == SQLITE_OK) &&
                 (!second ||
                  sqlite3_bind_text(statement, 2, second, -1, SQLITE_STATIC) == SQLITE_OK) &&
-                sqlite3_step(statement) == SQLITE_DONE;
+                (!statement || sqlite3_step(statement) == SQLITE_DONE);
     enum orl_result result = done ? ORL_OK : fail(db);
     sqlite3_finalize(statement);
     return result;
@@ -284,14 +285,9 @@ enum orl_result orl_database_detach(struct orl_database *db)
 
 // Databases of COLMAP 3.12 and later have rigs of cameras and frames of photographs that rigs take.
 // Photographs of one camera each have a rig a camera and a frame a photograph.
-static bool has_rigs(sqlite3 *handle)
+static enum orl_result find_rigs(struct orl_database *db, bool *has)
 {
-    sqlite3_stmt *statement = NULL;
-    bool has = sqlite3_prepare_v2(handle, "SELECT 1 FROM main.sqlite_master WHERE name = 'frames'",
-                                  -1, &statement, NULL) == SQLITE_OK &&
-               sqlite3_step(statement) == SQLITE_ROW;
-    sqlite3_finalize(statement);
-    return has;
+    return ask(db, "SELECT 1 FROM main.sqlite_master WHERE name = 'frames' LIMIT ?", 1, has);
 }
 
 // Runs `sql` on the attached database, at once or not at all.
@@ -331,8 +327,9 @@ static enum orl_result add_part(struct orl_database *db, const char *path, const
 
 enum orl_result orl_database_add_photographs(struct orl_database *db, const char *path)
 {
-    return add_part(db, path, has_rigs(db->handle) ? MOVES RIG_MOVES END_MOVES END_RIG_MOVES
-                                                   : MOVES END_MOVES);
+    bool rigs = false;
+    ORL_TRY(find_rigs(db, &rigs));
+    return add_part(db, path, rigs ? MOVES RIG_MOVES END_MOVES END_RIG_MOVES : MOVES END_MOVES);
 }
 
 // The photograph `name` goes to the rig of the camera that it has.
@@ -353,10 +350,12 @@ static enum orl_result share_rig(struct orl_database *db, const char *name)
 enum orl_result orl_database_share_camera(struct orl_database *db, const char *first,
                                           const char *name)
 {
+    bool rigs = false;
     ORL_TRY(run_with_text(
         db, "UPDATE images SET camera_id = (SELECT camera_id FROM images WHERE name = ?) "
             "WHERE name = ?", first, name));
-    if (has_rigs(db->handle))
+    ORL_TRY(find_rigs(db, &rigs));
+    if (rigs)
         ORL_TRY(share_rig(db, name));
     return run_sql(db, "DELETE FROM cameras WHERE camera_id NOT IN (SELECT camera_id FROM images)");
 }
@@ -369,38 +368,28 @@ enum orl_result orl_database_add_matches(struct orl_database *db, const char *pa
                     " SELECT * FROM part.two_view_geometries;");
 }
 
-// Runs the first statement only: a file from elsewhere may hold others behind it, such as ATTACH.
-static int run_first(sqlite3 *handle, const char *sql)
-{
-    sqlite3_stmt *statement = NULL;
-    int code = sqlite3_prepare_v2(handle, sql, -1, &statement, NULL);
-    if (code == SQLITE_OK && statement && sqlite3_step(statement) != SQLITE_DONE)
-        code = SQLITE_ERROR;
-    sqlite3_finalize(statement);
-    return code;
-}
-
 #define COPIED(table) "INSERT INTO main." table " SELECT * FROM part." table ";"
 
 // Makes the tables of the attached database, its cameras and its photographs.
-static int copy_tables(sqlite3 *handle)
+static enum orl_result copy_tables(struct orl_database *db)
 {
+    static const char sql[] = "SELECT sql FROM part.sqlite_master WHERE sql IS NOT NULL "
+                              "AND type IN ('table', 'index') AND name NOT LIKE 'sqlite_%'";
     sqlite3_stmt *statement = NULL;
-    int code = sqlite3_prepare_v2(handle, "SELECT sql FROM part.sqlite_master WHERE sql IS NOT NULL "
-                                          "AND type IN ('table', 'index') "
-                                          "AND name NOT LIKE 'sqlite_%'", -1, &statement, NULL);
-    int step = SQLITE_DONE;
-    while (code == SQLITE_OK && (step = sqlite3_step(statement)) == SQLITE_ROW)
-        code = run_first(handle, (const char *)sqlite3_column_text(statement, 0));
+    int step = SQLITE_ERROR;
+    bool rigs = false;
+    enum orl_result result = ORL_OK;
+    if (sqlite3_prepare_v2(db->handle, sql, -1, &statement, NULL) == SQLITE_OK)
+        while (result == ORL_OK && (step = sqlite3_step(statement)) == SQLITE_ROW)
+            result = run_with_text(db, (const char *)sqlite3_column_text(statement, 0), NULL, NULL);
+    if (result == ORL_OK && step != SQLITE_DONE)
+        result = fail(db);
     sqlite3_finalize(statement);
-    if (code == SQLITE_OK && step != SQLITE_DONE)
-        code = SQLITE_ERROR;
-    if (code == SQLITE_OK)
-        code = sqlite3_exec(handle, COPIED("cameras") COPIED("images"), NULL, NULL, NULL);
-    if (code == SQLITE_OK && has_rigs(handle))
-        code = sqlite3_exec(handle, COPIED("rigs") COPIED("frames") COPIED("frame_data"), NULL, NULL,
-                            NULL);
-    return code;
+    ORL_THEN(result, run_sql(db, COPIED("cameras") COPIED("images")));
+    ORL_THEN(result, find_rigs(db, &rigs));
+    if (result == ORL_OK && rigs)
+        result = run_sql(db, COPIED("rigs") COPIED("frames") COPIED("frame_data"));
+    return result;
 }
 
 enum orl_result orl_database_create_like(const struct orl_log *log, const char *path,
@@ -411,8 +400,7 @@ enum orl_result orl_database_create_like(const struct orl_log *log, const char *
     enum orl_result result =
         open_file(path, flags, &made.handle) ? attach(&made, other) : fail(&made);
     *db = NULL;
-    if (result == ORL_OK && copy_tables(made.handle) != SQLITE_OK)
-        result = fail(&made);
+    ORL_THEN(result, copy_tables(&made));
     sqlite3_close(made.handle);
     ORL_THEN(result, orl_database_open(log, path, db));
     return result == ORL_OK ? attach(*db, other) : result;
@@ -420,8 +408,9 @@ enum orl_result orl_database_create_like(const struct orl_log *log, const char *
 
 enum orl_result orl_database_take_features(struct orl_database *db, const char *name)
 {
-    ORL_TRY(run_with_text(db, "INSERT INTO main.keypoints SELECT * FROM part.keypoints WHERE image_id = "
-                              "(SELECT image_id FROM main.images WHERE name = ?)", name, NULL));
-    return run_with_text(db, "INSERT INTO main.descriptors SELECT * FROM part.descriptors WHERE image_id = "
-                             "(SELECT image_id FROM main.images WHERE name = ?)", name, NULL);
+#define TAKEN(table) \
+    "INSERT INTO main." table " SELECT * FROM part." table \
+    " WHERE image_id = (SELECT image_id FROM main.images WHERE name = ?)"
+    ORL_TRY(run_with_text(db, TAKEN("keypoints"), name, NULL));
+    return run_with_text(db, TAKEN("descriptors"), name, NULL);
 }
