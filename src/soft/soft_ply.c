@@ -39,13 +39,10 @@ static void write_all(FILE *stream, const struct orl_soft_model *model)
 
 enum orl_result orl_soft_write(const struct orl_log *log, const char *path, const struct orl_soft_model *model)
 {
-    struct orl_atomic_file file = {0};
-    enum orl_result result = orl_atomic_open(log, path, &file);
-    if (result == ORL_OK)
-        write_all(file.stream, model);
-    ORL_THEN(result, orl_atomic_commit(log, &file));
-    orl_atomic_abort(&file);
-    return result;
+    struct orl_atomic_file file;
+    ORL_TRY(orl_atomic_open(log, path, &file));
+    write_all(file.stream, model);
+    return orl_atomic_commit(log, &file);
 }
 
 static enum orl_result read_all(const struct orl_log *log, struct orl_ply *ply, struct orl_soft_model *model)
