@@ -10,8 +10,6 @@
 #include "core/vec3.h"
 #include "scene/isosurface.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum orl_result orl_figures_check(const struct orl_log *log, const struct orl_figures_params *p)
 {
     if (p->width < ORL_FIGURES_SIDE_MIN || p->width > ORL_FIGURES_SIDE_MAX ||
@@ -26,7 +24,7 @@ void orl_figures_views(const struct orl_figures_params *p, struct orl_view *view
     // The figure stays within 1.2 m of the middle, so it is whole in every picture.
     double least = p->width < p->height ? p->width : p->height, focal = 1.25 * least;
     for (int i = 0; i < p->cameras; i++) {
-        double angle = 2 * pi * i / p->cameras + 0.3, height = i % 2 ? 2.1 : 1.1;
+        double angle = 2 * M_PI * i / p->cameras + 0.3, height = i % 2 ? 2.1 : 1.1;
         const double eye[3] = {3.1 * sin(angle), height, 3.1 * cos(angle)};
         const double target[3] = {0, 0.92, 0}, up[3] = {0, 1, 0};
         views[i] = (struct orl_view){
@@ -77,7 +75,7 @@ void orl_figure_pose(int frame, struct orl_figure *figure)
     static const double trousers[2][3] = {{0.04, 0.07, 0.22}, {0.09, 0.13, 0.33}};
     static const double hair[2][3] = {{0.05, 0.03, 0.02}, {0.10, 0.06, 0.03}};
     struct orl_figure_part *p = figure->parts;
-    double time = frame / 25.0, step = 2 * pi * 0.9 * time, along = 2 * pi * 0.1 * time;
+    double time = frame / 25.0, step = 2 * M_PI * 0.9 * time, along = 2 * M_PI * 0.1 * time;
     const double hip[3] = {0, 0.90, 0}, chest[3] = {0, 1.30, 0}, neck[3] = {0, 1.48, 0};
     const double head[3] = {0, 1.64, 0.02}, crown[3] = {0, 1.68, -0.01};
     *p++ = part(hip, chest, 0.15, shirt);
@@ -104,7 +102,7 @@ void orl_figure_pose(int frame, struct orl_figure *figure)
     }
     // Facing along its circle, feet on the floor.
     const double at[3] = {0.45 * sin(along), 0.03, 0.45 * cos(along)};
-    place(figure, along + 0.5 * pi, at);
+    place(figure, along + 0.5 * M_PI, at);
 }
 
 void orl_figure_part_offset(const struct orl_figure_part *p, const double at[3], double off[3])

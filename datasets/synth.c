@@ -31,7 +31,6 @@ static double next_random(uint64_t *state)
 
 void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
 {
-    static const double pi = 3.14159265358979323846;
     static const double arc_rad = 0.87; // half of the arc
     uint64_t state = p->seed;
     double side = p->width > p->height ? p->width : p->height;
@@ -43,7 +42,7 @@ void orl_synth_views(const struct orl_synth_params *p, struct orl_view *views)
         double step = 2 * arc_rad / (p->count - 1);
         double angle = -arc_rad + step * i + 0.2 * step * jitter[0];
         // The path approaches the monument twice and recedes twice along the arc.
-        double distance = 12.8 - 1.9 * sin(4 * pi * i / (p->count - 1)) + 0.3 * jitter[1];
+        double distance = 12.8 - 1.9 * sin(4 * M_PI * i / (p->count - 1)) + 0.3 * jitter[1];
         const double eye[3] = {distance * sin(angle), 1.65 + 0.15 * jitter[2],
                                distance * cos(angle) - 0.6};
         const double target[3] = {0.3 * jitter[3] + 0.12 * eye[0], 3.8 + 0.25 * jitter[4], -0.8};

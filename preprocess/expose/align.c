@@ -17,7 +17,6 @@ enum {
     LENS_PHOTOS_MIN = 3,  // fewer photographs cannot separate the lens from the scene
     LENS_TERMS = 3,
 };
-static const double LN2 = 0.69314718055994531;
 // Standard deviation of a sample's log colour from gloss and misregistration, without noise.
 static const double SAMPLE_SIGMA = 0.1;
 // Least standard deviation of a photograph's gain, however many samples it shares.
@@ -239,8 +238,8 @@ static void set_prior(struct problem *p)
     double centre = mean_ev(p);
     for (size_t i = 0; i < p->photo_count; i++) {
         const struct orl_align_photo *photo = &p->photos[i];
-        double sigma = LN2 * (photo->known ? EXPOSURE_SIGMA_EV : UNKNOWN_SIGMA_EV);
-        p->prior[i] = photo->known ? -LN2 * (photo->ev - centre) : 0;
+        double sigma = M_LN2 * (photo->known ? EXPOSURE_SIGMA_EV : UNKNOWN_SIGMA_EV);
+        p->prior[i] = photo->known ? -M_LN2 * (photo->ev - centre) : 0;
         p->precision[i] = 1 / (sigma * sigma);
     }
 }
@@ -254,7 +253,7 @@ static void set_gains(struct problem *p, int channel)
         any = any || p->photos[i].known;
     for (size_t i = 0; i < p->photo_count; i++)
         if ((p->photos[i].known || !any) && !p->photos[i].refused) {
-            shift -= p->fit.x[i] + (any ? LN2 * p->photos[i].ev : 0);
+            shift -= p->fit.x[i] + (any ? M_LN2 * p->photos[i].ev : 0);
             count++;
         }
     shift = count > 0 ? shift / count : 0;
@@ -326,7 +325,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
             p->channel = 3;
             orl_robust_reset(&p->fit);
             residuals(p);
-            alignment->spread_before_ev = orl_robust_spread(&p->fit, false) / LN2;
+            alignment->spread_before_ev = orl_robust_spread(&p->fit, false) / M_LN2;
             result = fit_lenses(p, alignment);
         }
         for (int c = 0; result == ORL_OK && c < 4; c++) {
@@ -337,7 +336,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
         again = result == ORL_OK && refuse(p);
     }
     if (result == ORL_OK) {
-        alignment->spread_after_ev = orl_robust_spread(&p->fit, false) / LN2;
+        alignment->spread_after_ev = orl_robust_spread(&p->fit, false) / M_LN2;
         fall_back(p);
     }
     return result;

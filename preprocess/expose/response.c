@@ -21,7 +21,6 @@ enum {
     VALUE_MAX = 251,   // above it noise clips the brighter samples, which biases the others
     FLOOR_MAX = 64,    // a floor is below this value
 };
-static const double LN2 = 0.69314718055994531;
 static const double SAMPLE_SIGMA = 0.1; // of log colour, as in align.c
 static const double PAIR_MIN_EV = 0.4;  // least difference of exposure between two observations of
                                         // a point
@@ -162,7 +161,7 @@ static size_t choose(struct problem *p)
             const struct orl_response_photo *photo = &p->photos[item->photo];
             double value = (double)item->value[p->channel] - p->floor, slope;
             p->fit.sigma[i] = INFINITY;
-            p->light[i] = (float)(LN2 * photo->ev +
+            p->light[i] = (float)(M_LN2 * photo->ev +
                                   log(vignetting(photo->vignette, (double)item->r2)));
             if (!counts || !is_usable(p, item) || value < 2)
                 continue;
@@ -346,7 +345,7 @@ static bool iterate(struct problem *p, enum unknown unknown, double *spread_ev)
     }
     orl_robust_reset(&p->fit);
     set_residuals(p);
-    *spread_ev = orl_robust_spread(&p->fit, false) / LN2;
+    *spread_ev = orl_robust_spread(&p->fit, false) / M_LN2;
     return true;
 }
 
@@ -359,7 +358,7 @@ static double judge_curve(struct problem *p, const float linear[256])
     memset(p->offset, 0, p->photo_count * sizeof *p->offset);
     orl_robust_reset(&p->fit);
     set_residuals(p);
-    return orl_robust_spread(&p->fit, false) / LN2;
+    return orl_robust_spread(&p->fit, false) / M_LN2;
 }
 
 // Fits sRGB. Shutter times are told as 1/60 where they are 1/64: a stretch of the exposures by so little

@@ -10,7 +10,6 @@
 
 enum { FACES = 6 };
 
-static const double PI = 3.14159265358979323846;
 // Overlap of the faces beyond the cube's edges, in half sides, where they are blended. Each face
 // has its own depth reconstruction, which may differ on the two sides of an edge.
 static const double MARGIN = 0.15;
@@ -92,7 +91,7 @@ static void place(const struct orl_panorama *p, struct orl_pose *pose)
 
 bool orl_panorama_view(const struct orl_panorama *p, struct orl_view *view)
 {
-    double focal = p->width / (2 * PI);
+    double focal = p->width / (2 * M_PI);
     memset(view, 0, sizeof *view);
     view->camera = (struct orl_camera){p->width, p->height, focal, focal, 0.5 * p->width,
                                        0.5 * p->height};
@@ -104,7 +103,7 @@ bool orl_panorama_view(const struct orl_panorama *p, struct orl_view *view)
 
 static struct orl_view face_view(const struct orl_panorama *p, const double axes[3][3], int face)
 {
-    double focal = ceil(OVERSAMPLE * p->width / (2 * PI));
+    double focal = ceil(OVERSAMPLE * p->width / (2 * M_PI));
     int side = (int)ceil(2 * (1 + MARGIN) * focal);
     struct orl_view view = {.camera = {side, side, focal, focal, 0.5 * side, 0.5 * side}};
     struct orl_pose *pose = &view.cam_from_world;
@@ -126,8 +125,8 @@ struct panorama_sums {
 // Direction of a panorama pixel in the panorama's frame.
 static void direction_of(const struct orl_panorama *p, int x, int y, double d[3])
 {
-    double longitude = PI - 2 * PI * (x + 0.5) / p->width;
-    double latitude = PI / 2 - PI * (y + 0.5) / p->height;
+    double longitude = M_PI - 2 * M_PI * (x + 0.5) / p->width;
+    double latitude = M_PI / 2 - M_PI * (y + 0.5) / p->height;
     d[0] = -sin(longitude) * cos(latitude);
     d[1] = -sin(latitude);
     d[2] = cos(longitude) * cos(latitude);
