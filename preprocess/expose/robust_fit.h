@@ -20,7 +20,6 @@ struct orl_robust_fit {
     float *weight;   // robust; 0: takes no part
     float *residual; // the caller sets it, orl_robust_center makes it that from the point's mean
     float *scratch;
-    size_t unknowns;
     double *matrix, *x; // orl_robust_equations: normal equations and right side; x: unknowns once they are solved
 };
 enum orl_result orl_robust_init(const struct orl_log *log, const struct orl_samples *samples, size_t unknowns,
