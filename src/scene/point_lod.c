@@ -188,20 +188,22 @@ int orl_lod_children(const struct orl_lod *lod, size_t page, size_t *first, size
 
 // --- a sample ---
 
+bool orl_lod_decode(const struct orl_lod_data *page, size_t b, size_t i, struct orl_points *points)
+{
+    const struct point_frame frame = orl_point_block_frame(page->blocks[b]);
+    const uint32_t *geometry = page->geometry[b][i];
+    const size_t to = points->count;
+    orl_point_decode_normal(geometry, points->normal[to]);
+    points->radius[to] = orl_point_decode_radius(&frame, geometry);
+    memcpy(points->color[to], page->colors[b][i], sizeof points->color[to]);
+    return orl_point_decode_position(&frame, geometry, points->position[to]);
+}
+
 static void take_block(const struct orl_lod_data *data, size_t b, struct orl_points *points)
 {
-    const struct point_frame frame = orl_point_block_frame(data->blocks[b]);
-    for (size_t i = 0; i < (size_t)data->blocks[b][1][3]; i++) {
-        const size_t to = points->count;
-        const uint32_t *geometry = data->geometry[b][i];
-        if (!orl_point_decode_position(&frame, geometry, points->position[to]) ||
-            !orl_point_usable(points->position[to]))
-            continue;
-        orl_point_decode_normal(geometry, points->normal[to]);
-        points->radius[to] = orl_point_decode_radius(&frame, geometry);
-        memcpy(points->color[to], data->colors[b][i], sizeof points->color[to]);
-        points->count++;
-    }
+    for (size_t i = 0; i < (size_t)data->blocks[b][1][3]; i++)
+        points->count += orl_lod_decode(data, b, i, points) &&
+                         orl_point_usable(points->position[points->count]);
 }
 
 enum orl_result orl_lod_sample(const struct orl_lod *lod, size_t most, struct orl_points *points)

@@ -18,6 +18,9 @@ struct lod_header {
     struct orl_lod_level levels[ORL_LOD_LEVELS_MAX];
 };
 
+// Decodes point i of block b behind the cloud's points, without counting it. False: there is none.
+bool orl_lod_decode(const struct orl_lod_data *page, size_t b, size_t i, struct orl_points *points);
+
 static_assert(sizeof(struct orl_lod_data) == 93184, "a page has no padding");
 static_assert(sizeof(struct orl_lod_page) == 40, "an entry of the table has no padding");
 static_assert(sizeof(struct lod_header) <= LOD_PAGES_AT, "the header lies before the pages");

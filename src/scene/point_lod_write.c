@@ -166,15 +166,8 @@ static enum orl_result add_blocks(struct writer *w, size_t part)
 static void take_point(const struct orl_lod_data *page, size_t b, int i, struct orl_points *taken)
 {
     float count = page->blocks[b][1][3], drawn = fminf(count, TAKEN);
-    const struct point_frame frame = orl_point_block_frame(page->blocks[b]);
-    const uint32_t *geometry = page->geometry[b][i];
-    size_t to = taken->count;
-    if ((float)i >= count || !orl_point_decode_position(&frame, geometry, taken->position[to]))
-        return;
-    orl_point_decode_normal(geometry, taken->normal[to]);
-    taken->radius[to] = orl_point_decode_radius(&frame, geometry) * sqrtf(count / drawn);
-    memcpy(taken->color[to], page->colors[b][i], sizeof taken->color[to]);
-    taken->count++;
+    if ((float)i < count && orl_lod_decode(page, b, (size_t)i, taken))
+        taken->radius[taken->count++] *= sqrtf(count / drawn);
 }
 
 // Adds the parent of ORL_LOD_CHILDREN blocks from `first` on. It takes one point of each in turn, the
