@@ -252,19 +252,11 @@ static bool share_a_partner(const struct choice *c, uint32_t a, uint32_t b)
     return false;
 }
 
-static int by_score(const void *a, const void *b)
-{
-    const struct link *x = a, *y = b;
-    if (x->score != y->score)
-        return x->score < y->score ? 1 : -1;
-    return x->pair < y->pair ? -1 : x->pair > y->pair;
-}
-
 // A weaker candidate matters where nothing else joins its photographs, as where a loop closes.
-static void choose_shortcuts(struct choice *c, const struct link *ranked)
+static void choose_shortcuts(struct choice *c, const struct orl_ranked *ranked)
 {
     for (size_t i = 0; i < c->pair_count; i++) {
-        size_t index = ranked[i].pair;
+        size_t index = ranked[i].index;
         const struct orl_preempt_pair *pair = &c->pairs[index];
         if (!c->chosen[index] && pair->matches >= CANDIDATE &&
             !share_a_partner(c, pair->a, pair->b))
@@ -280,7 +272,7 @@ static uint32_t root(uint32_t *component, uint32_t photo)
 }
 
 // Joins the components of the chosen pairs; `linked` counts the pairs that each has got.
-static bool join_components(struct choice *c, const struct link *ranked, uint8_t *linked)
+static bool join_components(struct choice *c, const struct orl_ranked *ranked, uint8_t *linked)
 {
     bool joined = false;
     for (size_t p = 0; p < c->count; p++)
@@ -289,13 +281,13 @@ static bool join_components(struct choice *c, const struct link *ranked, uint8_t
         if (c->chosen[i])
             c->component[root(c->component, c->pairs[i].a)] = root(c->component, c->pairs[i].b);
     for (size_t i = 0; i < c->pair_count; i++) {
-        uint32_t a = root(c->component, c->pairs[ranked[i].pair].a);
-        uint32_t b = root(c->component, c->pairs[ranked[i].pair].b);
+        uint32_t a = root(c->component, c->pairs[ranked[i].index].a);
+        uint32_t b = root(c->component, c->pairs[ranked[i].index].b);
         if (a == b || (linked[a] >= LINKS && linked[b] >= LINKS))
             continue;
         linked[a] += linked[a] < LINKS;
         linked[b] += linked[b] < LINKS;
-        choose(c, ranked[i].pair);
+        choose(c, ranked[i].index);
         joined = true;
     }
     return joined;
@@ -307,14 +299,14 @@ static enum orl_result choose_pairs(struct choice *c)
     c->chosen = orl_array(c->log, c->pair_count, sizeof *c->chosen);
     c->partners = orl_array(c->log, c->count, c->words * sizeof *c->partners);
     c->component = orl_array(c->log, c->count, sizeof *c->component);
-    struct link *ranked = orl_array(c->log, c->pair_count, sizeof *ranked);
+    struct orl_ranked *ranked = orl_array(c->log, c->pair_count, sizeof *ranked);
     uint8_t *linked = orl_array(c->log, c->count, 1);
     enum orl_result result = c->chosen && c->partners && c->component && ranked && linked
                                  ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         for (size_t i = 0; i < c->pair_count; i++)
-            ranked[i] = (struct link){.score = score(c, &c->pairs[i]), .pair = i};
-        qsort(ranked, c->pair_count, sizeof *ranked, by_score);
+            ranked[i] = (struct orl_ranked){-(double)score(c, &c->pairs[i]), i};
+        qsort(ranked, c->pair_count, sizeof *ranked, orl_order_ranked);
         choose_best(c);
         result = choose_successive(c);
     }
