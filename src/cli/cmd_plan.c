@@ -1,4 +1,5 @@
 // oriel plan: what is left of a scene's work, as a graph of commands.
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,11 +13,6 @@
     ROW(json, "json", FLAG, "the graph, with each job's command, costs and files")
 COMMAND_OPTIONS(plan_options, PLAN_OPTIONS)
 
-static double number(const json_t *job, const char *key)
-{
-    return json_number_value(json_object_get(job, key));
-}
-
 // One line for the jobs of a kind.
 static void print_kind(const json_t *jobs, const char *kind)
 {
@@ -27,9 +23,9 @@ static void print_kind(const json_t *jobs, const char *kind)
         if (strcmp(orl_json_text(job, "kind"), kind) != 0)
             continue;
         count++;
-        cpu += number(job, "cpu_s");
-        written += number(job, "written_bytes");
-        memory = number(job, "memory_bytes") > memory ? number(job, "memory_bytes") : memory;
+        cpu += orl_json_value(job, "cpu_s");
+        written += orl_json_value(job, "written_bytes");
+        memory = fmax(memory, orl_json_value(job, "memory_bytes"));
     }
     if (count)
         printf("%-9s %5zu job%s  %9.0f s of CPU  up to %6.0f MiB of memory  %9.1f MiB written\n",

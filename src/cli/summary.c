@@ -8,23 +8,14 @@
 #include "core/json.h"
 #include "core/text.h"
 
-static long long count(const json_t *counts, const char *key)
-{
-    return (long long)json_integer_value(json_object_get(counts, key));
-}
-
-static double number(const json_t *record, const char *key)
-{
-    return json_number_value(json_object_get(record, key));
-}
-
 static void print_counts(const json_t *root)
 {
     const json_t *counts = json_object_get(root, "counts");
-    printf("photographs  %lld given, %lld used, %lld registered (%lld train, %lld held out)\n",
-           count(counts, "given"), count(counts, "used"), count(counts, "registered"),
-           count(counts, "train"), count(counts, "test"));
-    printf("points       %lld\n", count(counts, "points"));
+    printf("photographs  %.0f given, %.0f used, %.0f registered (%.0f train, %.0f held out)\n",
+           orl_json_value(counts, "given"), orl_json_value(counts, "used"),
+           orl_json_value(counts, "registered"), orl_json_value(counts, "train"),
+           orl_json_value(counts, "test"));
+    printf("points       %.0f\n", orl_json_value(counts, "points"));
 }
 
 static void print_stages(const json_t *stages)
@@ -33,13 +24,14 @@ static void print_stages(const json_t *stages)
     const char *name;
     const json_t *record;
     json_object_foreach((json_t *)(uintptr_t)stages, name, record) {
-        double own = number(record, "peak_rss_mib"), child = number(record, "child_peak_rss_mib");
+        double own = orl_json_value(record, "peak_rss_mib");
+        double child = orl_json_value(record, "child_peak_rss_mib");
         const char *tool = orl_json_text(record, "tool");
         double stage_peak = fmax(own, child);
-        printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  %s\n", name, number(record, "wall_s"),
-               number(record, "cpu_s"), stage_peak, tool ? tool : "");
-        wall += number(record, "wall_s");
-        cpu += number(record, "cpu_s");
+        printf("%-12s %7.1f s wall %8.1f s CPU %7.0f MiB  %s\n", name, orl_json_value(record, "wall_s"),
+               orl_json_value(record, "cpu_s"), stage_peak, tool ? tool : "");
+        wall += orl_json_value(record, "wall_s");
+        cpu += orl_json_value(record, "cpu_s");
         peak = fmax(peak, stage_peak);
     }
     if (json_object_size(stages) > 0)

@@ -169,6 +169,11 @@ bool orl_json_read_numbers(const json_t *array, size_t count, double *values)
     return true;
 }
 
+double orl_json_value(const json_t *object, const char *key)
+{
+    return json_number_value(json_object_get(object, key));
+}
+
 const char *orl_json_text(const json_t *object, const char *key)
 {
     return json_string_value(json_object_get(object, key));

@@ -53,6 +53,8 @@ enum orl_result orl_json_numbers(const struct orl_json_place *place, const json_
 
 // Copies an array of `count` finite numbers to `values`. False when it is anything else.
 bool orl_json_read_numbers(const json_t *array, size_t count, double *values);
+// The number of `key`; 0 when it is absent or not a number.
+double orl_json_value(const json_t *object, const char *key);
 // The text of `key`; NULL when it is absent or not a string.
 const char *orl_json_text(const json_t *object, const char *key);
 

@@ -48,7 +48,7 @@ static bool read_view(const json_t *json, const struct orl_camera *camera, struc
 {
     double rows[3][4];
     const json_t *frame = json_object_get(json, "frame");
-    double fov = json_number_value(json_object_get(json, "fov_y_deg"));
+    double fov = orl_json_value(json, "fov_y_deg");
     if (!orl_json_rows(json_object_get(json, "cam_from_world"), 3, 4, &rows[0][0]) ||
         !(fov > 1 && fov < 170))
         return false;
