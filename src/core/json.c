@@ -63,14 +63,13 @@ enum orl_result orl_json_write(const struct orl_log *log, const char *path, cons
 
 json_t *orl_json_string(const char *text)
 {
-    if (orl_utf8_valid(text))
-        return json_string(text);
+    json_t *string = json_string(text);
     size_t size = 4 * strlen(text) + 1;
-    char *shown = malloc(size);
+    char *shown = string ? NULL : malloc(size); // of a text that is not UTF-8
     if (!shown)
-        return NULL;
+        return string;
     orl_text_escape(text, shown, size);
-    json_t *string = json_string(shown);
+    string = json_string(shown);
     free(shown);
     return string;
 }

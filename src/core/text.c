@@ -21,14 +21,6 @@ static size_t utf8_length(const char *text)
     return bad ? 0 : length;
 }
 
-bool orl_utf8_valid(const char *text)
-{
-    for (size_t length; *text; text += length)
-        if (!(length = utf8_length(text)))
-            return false;
-    return true;
-}
-
 bool orl_text_is_one_of(const char *text, const char *const *list)
 {
     while (*list && strcmp(text, *list) != 0)

@@ -4,7 +4,6 @@
 
 #include "oriel/common.h"
 
-bool orl_utf8_valid(const char *text);
 // True when a list, which ends with NULL, has the text.
 bool orl_text_is_one_of(const char *text, const char *const *list);
 

@@ -1,6 +1,7 @@
 #include "test.h"
 
 #include "oriel/log.h"
+#include "core/json.h"
 #include "core/text.h"
 
 static void utf8(void **state)
@@ -16,8 +17,14 @@ static void utf8(void **state)
         {"\xf4\x90\x80\x80", false}, {"\xf5\x80\x80\x80", false}, {"\xe2\x82", false},
         {"\x80", false},
     };
-    for (size_t i = 0; i < ORL_COUNT(rows); i++)
-        assert_int_equal(orl_utf8_valid(rows[i].text), rows[i].valid);
+    for (size_t i = 0; i < ORL_COUNT(rows); i++) {
+        char shown[64];
+        orl_text_escape(rows[i].text, shown, sizeof shown);
+        assert_int_equal(strcmp(shown, rows[i].text) == 0, rows[i].valid);
+        json_t *string = orl_json_string(rows[i].text);
+        assert_string_equal(json_string_value(string), shown);
+        json_decref(string);
+    }
 }
 
 static void escaping(void **state)
