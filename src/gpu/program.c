@@ -7,8 +7,6 @@
 #include "core/process.h"
 #include "gpu/internal.h"
 
-enum { STAGES_MAX = 2 };
-
 struct orl_prog {
     char *key;         // owned: files, slots and defines
     GLuint id;         // 0: it does not compile, which was logged once
@@ -16,10 +14,8 @@ struct orl_prog {
     size_t params_size; // size of the program's block at binding 0; 0: no block
 };
 
-struct stage {
-    GLenum type;
-    const char *file;
-};
+// The shader files of a program's stages: of compute programs files[1] is NULL.
+enum { STAGES = 2 };
 
 static void log_failure(struct orl_gpu *gpu, const struct shader_source *source,
                         const char *what, const char *message)
@@ -78,29 +74,30 @@ static size_t find_params_size(GLuint program)
     return 0;
 }
 
-static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
-                 const struct orl_slot *slots, const char *defines, struct orl_prog *prog)
+static bool make(struct orl_gpu *gpu, const char *const files[STAGES], const struct orl_slot *slots,
+                 const char *defines, struct orl_prog *prog)
 {
-    struct shader_source sources[STAGES_MAX] = {0};
+    static const GLenum raster[STAGES] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER};
+    struct shader_source sources[STAGES] = {0};
     double start = orl_time_s();
     bool ok = true, cached = false;
+    bool cacheable = !files[1]; // only compute programs take long to compile
+    const size_t count = cacheable ? 1 : STAGES;
     for (size_t i = 0; ok && i < count; i++)
-        ok = orl_shader_source_load(gpu, stages[i].file, slots, defines, &sources[i]) == ORL_OK;
+        ok = orl_shader_source_load(gpu, files[i], slots, defines, &sources[i]) == ORL_OK;
     prog->id = glCreateProgram();
-    // Only compute programs take long to compile.
-    bool cacheable = count == 1;
     if (ok && cacheable)
         cached = orl_program_cache_load(gpu, &sources[0], prog->id);
     for (size_t i = 0; ok && !cached && i < count; i++)
-        ok = attach(gpu, stages[i].type, &sources[i], prog->id);
+        ok = attach(gpu, cacheable ? GL_COMPUTE_SHADER : raster[i], &sources[i], prog->id);
     if (ok && !cached)
         ok = link(gpu, &sources[0], prog->id);
     if (ok && !cached && cacheable)
         orl_program_cache_store(gpu, &sources[0], prog->id);
     if (ok) {
-        glObjectLabel(GL_PROGRAM, prog->id, -1, stages[0].file);
+        glObjectLabel(GL_PROGRAM, prog->id, -1, files[0]);
         prog->params_size = find_params_size(prog->id);
-        orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s %s in %.0f ms", stages[0].file,
+        orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s %s in %.0f ms", files[0],
                  cached ? "loaded" : "compiled", 1e3 * (orl_time_s() - start));
     } else {
         glDeleteProgram(prog->id);
@@ -108,15 +105,14 @@ static bool make(struct orl_gpu *gpu, const struct stage *stages, size_t count,
     }
     for (size_t i = 0; i < count; i++)
         orl_shader_source_finish(&sources[i]);
-    return orl_gpu_check_errors(gpu, stages[0].file) && ok;
+    return orl_gpu_check_errors(gpu, files[0]) && ok;
 }
 
 // Everything that determines a program, as one string.
-static char *make_key(const struct orl_log *log, const struct stage *stages, size_t count,
+static char *make_key(const struct orl_log *log, const char *const files[STAGES],
                       const struct orl_slot *slots, const char *defines)
 {
-    char *key = orl_format(log, "%s\n%s\n%s", stages[0].file, count > 1 ? stages[1].file : "",
-                           defines ? defines : "");
+    char *key = orl_format(log, "%s\n%s\n%s", files[0], files[1] ? files[1] : "", defines ? defines : "");
     for (const struct orl_slot *s = slots; key && s && s->name; s++) {
         char *longer = orl_format(log, "%s\n%s=%s", key, s->name, s->file);
         free(key);
@@ -125,11 +121,11 @@ static char *make_key(const struct orl_log *log, const struct stage *stages, siz
     return key;
 }
 
-static struct orl_prog *get(struct orl_gpu *gpu, const struct stage *stages, size_t count,
+static struct orl_prog *get(struct orl_gpu *gpu, const char *const files[STAGES],
                             const struct orl_slot *slots, const char *defines)
 {
     struct orl_prog *prog = NULL;
-    char *key = make_key(gpu->log, stages, count, slots, defines);
+    char *key = make_key(gpu->log, files, slots, defines);
     for (size_t i = 0; key && i < gpu->prog_count; i++)
         if (strcmp(gpu->progs[i]->key, key) == 0) {
             free(key);
@@ -144,7 +140,7 @@ static struct orl_prog *get(struct orl_gpu *gpu, const struct stage *stages, siz
     }
     prog->key = key;
     gpu->progs[gpu->prog_count++] = prog;
-    if (!make(gpu, stages, count, slots, defines, prog))
+    if (!make(gpu, files, slots, defines, prog))
         gpu->failed = true;
     return prog;
 }
@@ -152,16 +148,13 @@ static struct orl_prog *get(struct orl_gpu *gpu, const struct stage *stages, siz
 struct orl_prog *orl_prog_get(struct orl_gpu *gpu, const char *file, const struct orl_slot *slots,
                               const char *defines)
 {
-    const struct stage stage = {GL_COMPUTE_SHADER, file};
-    return get(gpu, &stage, 1, slots, defines);
+    return get(gpu, (const char *const[STAGES]){file}, slots, defines);
 }
 
 struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_file,
                                      const char *fragment_file, const char *defines)
 {
-    const struct stage stages[] = {{GL_VERTEX_SHADER, vertex_file},
-                                   {GL_FRAGMENT_SHADER, fragment_file}};
-    return get(gpu, stages, ORL_COUNT(stages), NULL, defines);
+    return get(gpu, (const char *const[STAGES]){vertex_file, fragment_file}, NULL, defines);
 }
 
 bool orl_prog_reads(const struct orl_prog *prog, const char *name)
