@@ -15,11 +15,11 @@ static const struct orl_option *option_at(const struct command *command, size_t 
     return row->name ? row : &common_option_rows()[index];
 }
 
-// Writes text with a backslash or `mark` before each of the characters in `special`.
-static void print_escaped(FILE *out, const char *text, const char *special, const char *mark)
+// Writes text with a backslash before each of the characters in `special`.
+static void print_escaped(FILE *out, const char *text, const char *special)
 {
     for (; *text; text++)
-        fprintf(out, "%s%c", strchr(special, *text) ? mark : "", *text);
+        fprintf(out, strchr(special, *text) ? "\\%c" : "%c", *text);
 }
 
 static const char *job_word(const struct command *command)
@@ -63,18 +63,18 @@ static bool is_file(const struct orl_option *row)
     return false;
 }
 
-static void print_commands(FILE *out, bool hidden, const char *separator)
+static void print_commands(FILE *out, bool hidden)
 {
     for (size_t i = 0; commands[i]; i++)
         if (commands[i]->hidden == hidden)
-            fprintf(out, "%s%s", commands[i]->name, separator);
+            fprintf(out, "%s ", commands[i]->name);
 }
 
 // --- the man page ---
 
 static void print_man(FILE *out, const char *text)
 {
-    print_escaped(out, text, "\\-", "\\");
+    print_escaped(out, text, "\\-");
 }
 
 static void print_man_option(FILE *out, const struct orl_option *row)
@@ -148,9 +148,9 @@ void page_bash(FILE *out)
                  "    [ \"$command\" != job ] || { command=\"job ${COMP_WORDS[2]}\"; first=2; }\n"
                  "    if [ \"$COMP_CWORD\" -le \"$first\" ]; then\n"
                  "        words='");
-    print_commands(out, false, " ");
+    print_commands(out, false);
     fprintf(out, "job version'\n        [ \"$first\" -eq 1 ] || words='");
-    print_commands(out, true, " ");
+    print_commands(out, true);
     fprintf(out, "'\n        mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$cur\")\n        return\n    fi\n"
                  "    case \"$command $prev\" in\n");
     for (size_t i = 0; commands[i]; i++)
@@ -162,7 +162,7 @@ void page_bash(FILE *out)
                 fprintf(out, "' ;;\n");
             }
     fprintf(out, "    'help '*) words='");
-    print_commands(out, false, " ");
+    print_commands(out, false);
     fprintf(out, "' ;;\n    esac\n    if [ -z \"$words\" ] && [[ $cur == -* ]]; then\n"
                  "        case $command in\n");
     for (size_t i = 0; commands[i]; i++) {
@@ -183,7 +183,7 @@ static void print_zsh_option(FILE *out, const struct orl_option *row)
     fprintf(out, "]");
     if (row->kind != ORL_VALUE_FLAG) {
         fprintf(out, ":");
-        print_escaped(out, row->meta, ":[]", "\\");
+        print_escaped(out, row->meta, ":[]");
         fprintf(out, has_values(row) ? ":(" : ":");
         print_values(out, row);
         fprintf(out, has_values(row) ? ")" : is_file(row) ? "_files" : " ");
@@ -196,11 +196,11 @@ void page_zsh(FILE *out)
     fprintf(out, "#compdef oriel\n# Completion of oriel for zsh.\n_oriel()\n{\n"
                  "    local command=$words[2]\n"
                  "    if (( CURRENT == 2 )); then\n        compadd -- ");
-    print_commands(out, false, " ");
+    print_commands(out, false);
     fprintf(out, "job version\n        return\n    fi\n"
                  "    if [[ $command == job ]]; then\n"
                  "        if (( CURRENT == 3 )); then\n            compadd -- ");
-    print_commands(out, true, " ");
+    print_commands(out, true);
     fprintf(out, "\n            return\n        fi\n        command=\"job $words[3]\"\n"
                  "        shift words\n        (( CURRENT-- ))\n    fi\n"
                  "    shift words\n    (( CURRENT-- ))\n    case $command in\n");
@@ -223,7 +223,7 @@ void page_fish(FILE *out)
         snprintf(seen, sizeof seen, "__fish_seen_subcommand_from %s", command->name);
         fprintf(out, "complete -c oriel -n '%s' -fa %s -d '",
                 command->hidden ? "__fish_seen_subcommand_from job" : first, command->name);
-        print_escaped(out, command->brief, "'\\", "\\");
+        print_escaped(out, command->brief, "'\\");
         fprintf(out, "'\n");
         for (size_t k = 0; option_at(command, k)->name; k++) {
             const struct orl_option *row = option_at(command, k);
@@ -235,7 +235,7 @@ void page_fish(FILE *out)
                 fprintf(out, "'");
             }
             fprintf(out, " -d '");
-            print_escaped(out, row->help, "'\\", "\\");
+            print_escaped(out, row->help, "'\\");
             fprintf(out, "'\n");
         }
     }
@@ -249,9 +249,9 @@ static void print_markdown_option(FILE *out, const struct orl_option *row)
     char facts[HELP_FACTS];
     help_facts(row, facts);
     fprintf(out, "| `--%s%s", row->name, *row->meta ? " " : "");
-    print_escaped(out, row->meta, "|", "\\");
+    print_escaped(out, row->meta, "|");
     fprintf(out, "` | ");
-    print_escaped(out, row->help, "|<*_", "\\");
+    print_escaped(out, row->help, "|<*_");
     fprintf(out, " | %s |\n", facts);
 }
 
