@@ -55,12 +55,13 @@ enum orl_result orl_site_room(struct site *site, struct orl_points *walls) ORL_C
 // Gives the pixels without depth the depth of the room's walls.
 void orl_site_room_depth(const struct site *site, const struct orl_view *view, struct orl_image *depth);
 // Writes steps/, the subject and the photographs of each time step, but for the photographs of the first,
-// which the site itself has, and sets *steps to the manifest's array.
+// which the site itself has, and sets *steps to the manifest's array, likewise.
 enum orl_result orl_site_steps(struct site *site, json_t **steps) ORL_CHECK_RESULT;
 
 // --- photographs (site_photos.c) ---
 
-// Writes photos/, depth/ and thumbs/ in site->folder, and sets *photos to the manifest's array.
+// Writes photos/, depth/ and thumbs/ in site->folder, and sets *photos to the manifest's array, which is owned by the
+// caller even after an error.
 enum orl_result orl_site_photos(struct site *site, json_t **photos);
 // What the scene's radiance is published in: from well below what its brightest photographs see to
 // what its darkest ones clip at.
@@ -78,7 +79,7 @@ enum orl_result orl_site_soft_photo(struct site *site, const struct orl_view *vi
 
 // --- manifest (site_manifest.c) ---
 
-// Writes manifest.json and takes over its parts. steps: NULL of a scene without silhouettes; soft: NULL without splats.
+// Writes manifest.json with these parts. steps: NULL of a scene without silhouettes; soft: NULL without splats.
 enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *photos, json_t *steps, json_t *soft);
 
 // The entries that the manifests of a site and of a server have in common.

@@ -91,12 +91,9 @@ static enum orl_result write_site(struct site *site)
     ORL_THEN(result, orl_site_poster(site));
     if (result == ORL_OK && site->carves)
         result = orl_site_steps(site, &steps);
-    if (result == ORL_OK) {
-        result = orl_site_manifest(site, points, photos, steps, soft);
-        for (size_t i = 0; i < ORL_COUNT(first); i++)
-            site->report->first_bytes += bytes_of(site, first[i]);
-        return result;
-    }
+    ORL_THEN(result, orl_site_manifest(site, points, photos, steps, soft));
+    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(first); i++)
+        site->report->first_bytes += bytes_of(site, first[i]);
     json_decref(points);
     json_decref(photos);
     json_decref(steps);

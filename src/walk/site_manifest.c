@@ -109,7 +109,7 @@ enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *pho
 {
     json_t *root = orl_walk_manifest(site->scene, site->settings, site->params->title,
                                      site->start);
-    json_t *more = json_pack("{s:o, s:o, s:o, s:o, s:o*, s:o*}", "poster", orl_site_file(site, "poster.jpg"),
+    json_t *more = json_pack("{s:o, s:o, s:O, s:O, s:O*, s:O*}", "poster", orl_site_file(site, "poster.jpg"),
                              "options", options_json(&site->render), "points", points, "photos",
                              photos, "steps", steps, "soft", soft);
     if (json_object_update_new(root, more) != 0) {

@@ -251,7 +251,7 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
 enum orl_result orl_site_photos(struct site *site, json_t **out)
 {
     const struct orl_scene *scene = site->scene;
-    json_t *photos = json_array();
+    json_t *photos = *out = json_array();
     size_t count = 0;
     enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
@@ -269,10 +269,6 @@ enum orl_result orl_site_photos(struct site *site, json_t **out)
                                 (double)scene->photo_count, scene->photos[i].name);
     }
     site->report->photos += count;
-    if (result == ORL_OK)
-        *out = photos;
-    else
-        json_decref(photos);
     return result;
 }
 

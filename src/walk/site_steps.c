@@ -270,7 +270,7 @@ enum orl_result orl_site_steps(struct site *site, json_t **out)
     bool said_endless = false;
     char folder[32];
     enum orl_result result = ORL_OK;
-    json_t *steps = json_array();
+    json_t *steps = *out = json_array();
     site->folder = folder;
     for (size_t t = 0; result == ORL_OK && t < count; t++) {
         snprintf(folder, sizeof folder, "steps/%05zu/", t);
@@ -284,9 +284,5 @@ enum orl_result orl_site_steps(struct site *site, json_t **out)
     site->folder = "";
     if (scene->frame_count && orl_scene_set_frame(site->log, scene, before) != ORL_OK && result == ORL_OK)
         result = ORL_ERR_IO;
-    if (result == ORL_OK)
-        *out = steps;
-    else
-        json_decref(steps);
     return result;
 }
