@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <libwebsockets.h>
+
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -46,14 +48,12 @@ static const char *web_file(const char *name)
 
 static void put_base64(FILE *out, const uint8_t *data, size_t size)
 {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
+    enum { BYTES = 3 << 10 }; // encoded at once; a multiple of three, so that only the last part is filled up
+    char text[BYTES / 3 * 4 + 1];
+    for (size_t i = 0; i < size; i += BYTES) {
         size_t left = size - i;
-        uint32_t bits = (uint32_t)data[i] << 16 | (left > 1 ? (uint32_t)data[i + 1] << 8 : 0) |
-                        (left > 2 ? data[i + 2] : 0);
-        char four[4] = {digits[bits >> 18], digits[bits >> 12 & 63],
-                        left > 1 ? digits[bits >> 6 & 63] : '=', left > 2 ? digits[bits & 63] : '='};
-        fwrite(four, 1, sizeof four, out);
+        lws_b64_encode_string((const char *)data + i, left < BYTES ? (int)left : BYTES, text, sizeof text);
+        fputs(text, out);
     }
 }
 
@@ -246,13 +246,6 @@ enum orl_result orl_site_page(struct site *site)
 
 // --- the site as one file ---
 
-// True for data files, which the page requests by name.
-static bool is_data(const char *path)
-{
-    return strcmp(path, index_name) != 0 && strcmp(path, "style.css") != 0 &&
-           strcmp(path, "icon.svg") != 0 && strncmp(path, "js/", 3) != 0;
-}
-
 // As orl_site_files, of what is below `folder` of the site.
 static enum orl_result list_files(const struct orl_log *log, const char *dir, const char *folder,
                                   bool data, struct orl_names *paths)
@@ -267,7 +260,7 @@ static enum orl_result list_files(const struct orl_log *log, const char *dir, co
             result = ORL_ERR_MEMORY;
         else if (orl_path_is_dir(full))
             result = list_files(log, dir, path, data, paths);
-        else if (!data || is_data(path))
+        else if (!data || !*web_file(path)) // data is what the page requests by name
             result = orl_names_add(log, paths, path);
         free(full);
         free(path);
