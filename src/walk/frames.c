@@ -74,16 +74,15 @@ static bool read_picks(const json_t *root, struct walk_request *request)
 bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request)
 {
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
-    const json_t *number = json_object_get(root, "number");
-    const json_t *quality = json_object_get(root, "quality");
-    const char *layer = orl_json_text(root, "layer");
+    json_int_t number = -1, quality = 0;
+    const char *layer = "";
     int index = 0;
-    while (layer && index < WALK_LAYERS && strcmp(layer_names[index], layer) != 0)
+    bool valid = json_unpack(root, "{s:I, s:I, s:s}", "number", &number, "quality", &quality, "layer", &layer) == 0 &&
+                 number >= 0 && number <= UINT32_MAX && quality >= 1 && quality <= 100;
+    while (index < WALK_LAYERS && strcmp(layer_names[index], layer) != 0)
         index++;
-    *request = (struct walk_request){.number = (uint32_t)json_integer_value(number),
-                                     .layer = (enum walk_layer)index,
-                                     .quality = (int)json_integer_value(quality),
-                                     .at_rest = json_is_true(json_object_get(root, "rest")),
+    *request = (struct walk_request){.number = (uint32_t)number, .layer = (enum walk_layer)index,
+                                     .quality = (int)quality, .at_rest = json_is_true(json_object_get(root, "rest")),
                                      .measures = json_is_true(json_object_get(root, "measure"))};
     const json_t *time_steps = json_object_get(root, "time_steps");
     double pair[2] = {0, 0};
@@ -91,11 +90,8 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
                                  pair[1] >= 0 && pair[0] <= INT32_MAX && pair[1] <= INT32_MAX);
     request->time_step = timed ? (int)pair[0] : 0;
     request->expected = timed ? (int)pair[1] : 0;
-    bool valid = timed && layer && index < WALK_LAYERS && json_is_integer(number) &&
-                 json_integer_value(number) >= 0 && json_integer_value(number) <= UINT32_MAX &&
-                 json_is_integer(quality) && json_integer_value(quality) >= 1 &&
-                 json_integer_value(quality) <= 100 && read_view(root, &request->view) &&
-                 read_picks(root, request) && orl_walk_tone_read(root, &request->tone);
+    valid = valid && timed && index < WALK_LAYERS && read_view(root, &request->view) &&
+            read_picks(root, request) && orl_walk_tone_read(root, &request->tone);
     json_decref(root);
     return valid;
 }
@@ -233,24 +229,19 @@ static json_t *finish_measuring(const struct walk_renderer *walk, double draw_s,
 
 // --- frames ---
 
-struct jpeg {
-    uint8_t *data; // owned
-    size_t size;
-};
-
 // Puts room, header, depths and JPEG together.
 static enum orl_result assemble(const struct orl_log *log, const uint32_t header[WALK_FRAME_WORDS],
-                                const float *depths, size_t before, const struct jpeg *jpeg,
+                                const float *depths, size_t before, const uint8_t *jpeg, size_t size,
                                 struct walk_frame *frame)
 {
     size_t head = WALK_FRAME_WORDS * sizeof *header;
     size_t more = header[WALK_FRAME_WORDS - 1] * sizeof *depths;
-    frame->data = orl_array(log, before + head + more + jpeg->size, 1);
+    frame->data = orl_array(log, before + head + more + size, 1);
     ORL_TRY_MEMORY(frame->data);
     memcpy(frame->data + before, header, head);
     memcpy(frame->data + before + head, depths, more);
-    memcpy(frame->data + before + head + more, jpeg->data, jpeg->size);
-    frame->size = head + more + jpeg->size;
+    memcpy(frame->data + before + head + more, jpeg, size);
+    frame->size = head + more + size;
     return ORL_OK;
 }
 
@@ -260,26 +251,27 @@ enum orl_result orl_walk_frame(struct walk_renderer *walk, const struct walk_req
 {
     struct orl_image picture = {0};
     struct outcome outcome = {0};
-    struct jpeg jpeg = {0};
+    uint8_t *jpeg = NULL;
+    size_t size = 0;
     *frame = (struct walk_frame){0};
     if (request->measures)
         start_measuring(walk);
     double start = orl_time_s();
     enum orl_result result = draw(walk, request, params, &picture, &outcome);
     double drawn = orl_time_s();
-    ORL_THEN(result, orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg.data, &jpeg.size));
+    ORL_THEN(result, orl_jpeg_encode(walk->log, &picture, request->quality, &jpeg, &size));
     double end = orl_time_s();
     if (request->measures)
         frame->figures = finish_measuring(walk, drawn - start, end - drawn);
     const uint32_t header[WALK_FRAME_WORDS] = {
         request->number, (uint32_t)(1e6 * (end - start)), (uint32_t)picture.width,
         (uint32_t)picture.height, (uint32_t)outcome.missing, (uint32_t)request->pick_count};
-    ORL_THEN(result, assemble(walk->log, header, outcome.picked, before, &jpeg, frame));
+    ORL_THEN(result, assemble(walk->log, header, outcome.picked, before, jpeg, size, frame));
     if (result != ORL_OK) {
         json_decref(frame->figures);
         *frame = (struct walk_frame){0};
     }
-    free(jpeg.data);
+    free(jpeg);
     orl_image_finish(&picture);
     return result;
 }

@@ -362,12 +362,10 @@ static int write_message(struct session *session, uint8_t *message, size_t size,
 
 static int write_reply(const struct server *server, struct session *session)
 {
-    char *text = json_dumps(session->reply, JSON_COMPACT);
-    size_t size = text ? strlen(text) : 0;
-    uint8_t *message = text ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
+    size_t size = json_dumpb(session->reply, NULL, 0, JSON_COMPACT);
+    uint8_t *message = size ? orl_array(server->log, LWS_PRE + size, 1) : NULL;
     if (message)
-        memcpy(message + LWS_PRE, text, size);
-    free(text);
+        (void)json_dumpb(session->reply, (char *)message + LWS_PRE, size, JSON_COMPACT);
     json_decref(session->reply);
     session->reply = NULL;
     return write_message(session, message, size, LWS_WRITE_TEXT);
