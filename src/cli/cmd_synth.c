@@ -70,16 +70,14 @@ static enum orl_result read_path(const struct orl_log *log, const char *file,
 static enum orl_result make_monument(struct call *call, const struct orl_synth_params *params)
 {
     const struct synth_options *o = call->options;
-    char *photos = orl_path_append(call->log, o->out, "");
-    char *truth = orl_path_append(call->log, o->truth ? o->truth : o->out, o->truth ? "" : "-truth");
-    enum orl_result result = photos && truth ? orl_synth_check(call->log, params) : ORL_ERR_MEMORY;
+    const char *photos = ORL_PATH("", "%.*s", orl_path_bare(o->out), o->out), *truth = o->truth;
+    truth = truth ? ORL_PATH("", "%.*s", orl_path_bare(truth), truth) : ORL_PATH("", "%s-truth", photos);
+    enum orl_result result = orl_synth_check(call->log, params);
     ORL_THEN(result, command_device(call));
     ORL_THEN(result, orl_synth_run(call->gpu, call->progress, params, photos, truth));
     terminal_finish(call->terminal);
     if (result == ORL_OK)
         printf("%d photographs in %s, truth in %s\n", params->count, photos, truth);
-    free(truth);
-    free(photos);
     return result;
 }
 
@@ -111,15 +109,13 @@ static enum orl_result check_options(const struct orl_log *log, const struct syn
 static enum orl_result make_figures(struct call *call, const struct orl_figures_params *params)
 {
     const struct synth_options *o = call->options;
-    char *dir = orl_path_append(call->log, o->out, "");
-    enum orl_result result = dir ? orl_figures_run(call->log, call->progress, params, dir)
-                                 : ORL_ERR_MEMORY;
+    const char *dir = ORL_PATH("", "%.*s", orl_path_bare(o->out), o->out);
+    enum orl_result result = orl_figures_run(call->log, call->progress, params, dir);
     if (result == ORL_OK && o->live)
         result = orl_figures_play(call->log, call->progress, params, dir, o->live);
     terminal_finish(call->terminal);
     if (result == ORL_OK)
         printf("%d cameras, %d time steps in %s\n", params->cameras, params->frames, dir);
-    free(dir);
     return result;
 }
 

@@ -37,12 +37,12 @@ char *orl_path_join(const struct orl_log *log, const char *dir, const char *name
     return orl_format(log, "%s%s%s", dir, slash, name);
 }
 
-char *orl_path_append(const struct orl_log *log, const char *path, const char *ending)
+int orl_path_bare(const char *path)
 {
     size_t length = strlen(path);
     while (length > 1 && path[length - 1] == '/')
         length--;
-    return orl_format(log, "%.*s%s", (int)length, path, ending);
+    return (int)length;
 }
 
 const char *orl_path_name(const char *path)

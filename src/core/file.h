@@ -14,8 +14,8 @@
 const char *orl_path_print(char path[ORL_PATH_SIZE], const char *dir, const char *format, ...) ORL_PRINTF(3, 4);
 // "dir/name", released with free(); NULL, logged, when memory runs out.
 char *orl_path_join(const struct orl_log *log, const char *dir, const char *name);
-// `path` without slashes at its end, followed by `ending`; released with free(), NULL as above.
-char *orl_path_append(const struct orl_log *log, const char *path, const char *ending);
+// Length of the path without slashes at its end, for "%.*s".
+int orl_path_bare(const char *path);
 // The part after the last '/', pointing into `path`.
 const char *orl_path_name(const char *path);
 // Length of a path without the extension of its file.

@@ -95,14 +95,11 @@ static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
 static enum orl_result begin(const struct orl_log *log, const char *out, bool over,
                              struct orl_new_dir *dir)
 {
-    char *named = orl_path_append(log, out, ""); // without slashes at its end
     *dir = (struct orl_new_dir){.fd = -1};
-    enum orl_result result = named ? orl_path_follow(log, named, dir->out) : ORL_ERR_MEMORY;
-    free(named);
-    ORL_TRY(result);
+    ORL_TRY(orl_path_follow(log, ORL_PATH("", "%.*s", orl_path_bare(out), out), dir->out));
     const char *name = orl_path_name(dir->out);
     const char *parent = name == dir->out ? "." : ORL_PATH("", "%.*s", (int)(name - dir->out), dir->out);
-    result = orl_dir_make(log, parent);
+    enum orl_result result = orl_dir_make(log, parent);
     int lock = result == ORL_OK ? lock_parent(parent) : -1;
     ORL_THEN(result, meet_others(log, parent, dir->out, over));
     ORL_THEN(result, make(log, dir));

@@ -59,10 +59,7 @@ char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene, c
     const char *own = orl_json_text(settings, "title");
     if (asked || (own && *own))
         return orl_strdup(log, asked ? asked : own);
-    char *name = orl_path_append(log, scene->dir, "");
-    char *last = name ? orl_strdup(log, orl_path_name(name)) : NULL;
-    free(name);
-    return last;
+    return orl_strdup(log, orl_path_name(ORL_PATH("", "%.*s", orl_path_bare(scene->dir), scene->dir)));
 }
 
 // A photograph's index among those that are not held out.
