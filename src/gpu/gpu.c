@@ -136,6 +136,8 @@ static enum orl_result open_gpu(struct orl_gpu *gpu, const struct orl_gpu_params
         return orl_fail(log, ORL_ERR_GPU, "found OpenGL %s (%s). %s", (const char *)glGetString(GL_VERSION),
                         (const char *)glGetString(GL_RENDERER), mesa_advice);
     query_caps(&gpu->caps);
+    glCreateVertexArrays(1, &gpu->vertex_array);
+    glCreateFramebuffers(1, &gpu->framebuffer);
     if (params->debug) {
         glEnable(GL_DEBUG_OUTPUT);
         glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -173,7 +175,8 @@ void orl_gpu_destroy(struct orl_gpu **handle)
             orl_logf(gpu->log, ORL_LOG_ERROR, "%s: %u objects still alive", gpu->memory[i].tag, gpu->memory[i].objects);
     if (gpu->current) {
         orl_gpu_free_programs(gpu);
-        orl_gpu_free_raster(gpu);
+        glDeleteVertexArrays(1, &gpu->vertex_array);
+        glDeleteFramebuffers(1, &gpu->framebuffer);
         orl_gpu_free_queries(gpu);
         eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(gpu->display, gpu->context);

@@ -29,7 +29,7 @@ struct orl_gpu {
     bool current;     // the context could be made current
     struct orl_prog **progs; // programs made so far, owned
     size_t prog_count, prog_capacity;
-    GLuint vertex_array, framebuffer; // of raster.c; 0: not created yet
+    GLuint vertex_array, framebuffer; // of raster.c
     size_t live_bytes;
     struct orl_gpu_memory memory[ORL_MEMORY_ROWS_MAX];
     size_t memory_count;
@@ -76,7 +76,6 @@ bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params
 void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
                   const int *image_layers);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
-void orl_gpu_free_raster(struct orl_gpu *gpu);
 
 // Logs every pending GL error as caused by `where`. True if there was none.
 bool orl_gpu_check_errors(struct orl_gpu *gpu, const char *where);

@@ -3,15 +3,6 @@
 #include "gpu/internal.h"
 
 // Vertex inputs and targets are set for every draw, since there are only a few draws a frame.
-static bool make_objects(struct orl_gpu *gpu)
-{
-    if (!gpu->vertex_array)
-        glCreateVertexArrays(1, &gpu->vertex_array);
-    if (!gpu->framebuffer)
-        glCreateFramebuffers(1, &gpu->framebuffer);
-    return gpu->vertex_array && gpu->framebuffer;
-}
-
 static void bind_inputs(GLuint array, const struct orl_raster *r)
 {
     for (GLuint i = 0; i < ORL_RASTER_INPUTS_MAX; i++) {
@@ -72,7 +63,7 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     const struct orl_tex *any;
     if (!orl_prog_use(gpu, r->prog, r->params, r->params_size))
         return;
-    if (!make_objects(gpu) || !bind_targets(gpu, r, &any)) {
+    if (!bind_targets(gpu, r, &any)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "these targets make no framebuffer");
         gpu->failed = true;
         return;
@@ -103,11 +94,4 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     if (r->barrier)
         glMemoryBarrier(r->barrier);
     orl_gpu_check_errors(gpu, "raster");
-}
-
-void orl_gpu_free_raster(struct orl_gpu *gpu)
-{
-    glDeleteVertexArrays(1, &gpu->vertex_array);
-    glDeleteFramebuffers(1, &gpu->framebuffer);
-    gpu->vertex_array = gpu->framebuffer = 0;
 }
