@@ -188,10 +188,9 @@ static enum orl_result write_files(struct writing *w, json_t *files)
         size_t left = w->order.cells - c, points = 0;
         size_t count = left < CELLS_PER_FILE ? left : CELLS_PER_FILE;
         encode_cells(w, c, count, rest, &points);
-        char path[64];
         if (!(w->coarse < w->share)) // the coarse file has all points
             continue;
-        snprintf(path, sizeof path, "%spoints/%04zu.bin", w->site->folder, c / CELLS_PER_FILE);
+        const char *path = ORL_PATH("", "%spoints/%04zu.bin", w->site->folder, c / CELLS_PER_FILE);
         result = orl_site_write(w->site, path, rest, points * POINT_BYTES);
         json_t *file = result == ORL_OK ? orl_site_file(w->site, path) : NULL;
         if (file)
@@ -206,8 +205,7 @@ static enum orl_result write_files(struct writing *w, json_t *files)
 // Writes the header, the cells' records and the coarse points.
 static enum orl_result write_coarse(struct writing *w, json_t **file)
 {
-    char path[64];
-    snprintf(path, sizeof path, "%spoints/coarse.bin", w->site->folder);
+    const char *path = ORL_PATH(w->site->folder, "points/coarse.bin");
     const uint32_t header[4] = {magic, 2, (uint32_t)w->order.cells, POINT_BYTES};
     size_t cells = w->order.cells * sizeof *w->words;
     size_t size = sizeof header + cells + w->coarse_size;

@@ -1,6 +1,5 @@
 #include "walk/content_internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,13 +20,10 @@ enum { PICTURE_SIDE = 1600, PICTURE_QUALITY = 88, THUMB_SIDE = 160, THUMB_QUALIT
 
 static json_t *photo_json(const struct orl_photo *photo, size_t number)
 {
-    char picture[64], thumb[64];
-    snprintf(picture, sizeof picture, "photos/%05zu.jpg", number);
-    snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
     json_t *json = orl_walk_photo(photo, &photo->view.camera);
     json_object_set_new(json, "held_out", json_boolean(photo->test));
-    json_object_set_new(json, "picture", json_pack("{s:s}", "file", picture));
-    json_object_set_new(json, "thumb", json_pack("{s:s}", "file", thumb));
+    json_object_set_new(json, "picture", json_pack("{s:o}", "file", json_sprintf("photos/%05zu.jpg", number)));
+    json_object_set_new(json, "thumb", json_pack("{s:o}", "file", json_sprintf("thumbs/%05zu.jpg", number)));
     return json;
 }
 

@@ -207,18 +207,19 @@ static json_t *vector_json(const float v[3])
     return json_pack("[f,f,f]", (double)v[0], (double)v[1], (double)v[2]);
 }
 
-static enum orl_result write_photo(struct site *site, size_t index, size_t number, json_t **out)
+// Writes what the site shows of a photograph and adds it to the manifest's array.
+static enum orl_result write_photo(struct site *site, size_t index, json_t *photos)
 {
+    const size_t number = json_array_size(photos);
     const struct orl_photo *photo = &site->scene->photos[index];
     struct orl_camera c = within(&photo->view.camera, site->params->photo_side);
     struct orl_view depth_view = {.camera = within(&c, DEPTH_SIDE_MAX),
                                   .cam_from_world = photo->view.cam_from_world};
-    char picture[64], thumb[64], depth[64], soft[64];
+    const char *picture = ORL_PATH("", "%sphotos/%05zu.jpg", site->folder, number);
+    const char *thumb = ORL_PATH("", "thumbs/%05zu.jpg", number);
+    const char *depth = ORL_PATH("", "%sdepth/%05zu.png", site->folder, number);
+    const char *soft = ORL_PATH("", "soft/%05zu.jpg", number);
     float nearest = 1;
-    snprintf(picture, sizeof picture, "%sphotos/%05zu.jpg", site->folder, number);
-    snprintf(thumb, sizeof thumb, "thumbs/%05zu.jpg", number);
-    snprintf(depth, sizeof depth, "%sdepth/%05zu.png", site->folder, number);
-    snprintf(soft, sizeof soft, "soft/%05zu.jpg", number);
     enum orl_result result = site->params->radiance
                                  ? write_radiance(site, index, &c, picture, thumb)
                                  : write_pictures(site, index, &c, picture, thumb);
@@ -232,7 +233,7 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
                            json_pack("{s:i, s:i, s:f, s:i}", "width", depth_view.camera.width,
                                      "height", depth_view.camera.height, "nearest", (double)nearest,
                                      "steps_per_fold", STEPS_PER_FOLD));
-    *out = orl_walk_photo(photo, &c);
+    json_t *json = orl_walk_photo(photo, &c);
     // Radiance has the scene's exposure, and no vignetting.
     static const float one[3] = {1, 1, 1}, none[3] = {0};
     bool radiance = site->params->radiance;
@@ -241,34 +242,26 @@ static enum orl_result write_photo(struct site *site, size_t index, size_t numbe
                              vector_json(radiance ? none : photo->vignette), "picture",
                              orl_site_file(site, picture), "thumb", orl_site_file(site, thumb),
                              "depth", depth_file, "soft", site->soft.count ? orl_site_file(site, soft) : NULL);
-    if (*out && json_object_update_new(*out, more) != 0) {
-        json_decref(*out);
-        *out = NULL;
-    }
-    return *out ? ORL_OK : ORL_ERR_MEMORY;
+    bool whole = json_object_update_new(json, more) == 0;
+    return json_array_append_new(photos, json) == 0 && whole ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 enum orl_result orl_site_photos(struct site *site, json_t **out)
 {
     const struct orl_scene *scene = site->scene;
     json_t *photos = *out = json_array();
-    size_t count = 0;
     enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (scene->photos[i].test)
             continue;
-        json_t *photo = NULL;
         if (orl_progress_cancelled(site->params->progress))
             result = ORL_ERR_CANCELLED;
-        ORL_THEN(result, write_photo(site, i, count, &photo));
-        if (result == ORL_OK && json_array_append_new(photos, photo) != 0)
-            result = ORL_ERR_MEMORY;
-        count += result == ORL_OK;
+        ORL_THEN(result, write_photo(site, i, photos));
         if (!*site->folder)
             orl_progress_report(site->params->progress, "publish", (double)(i + 1),
                                 (double)scene->photo_count, scene->photos[i].name);
     }
-    site->report->photos += count;
+    site->report->photos += json_array_size(photos);
     return result;
 }
 
