@@ -46,7 +46,7 @@ struct orl_gpu {
 };
 
 // Expanded source of shaders/`file`: version, defines, includes, #line. Owned by the caller
-// (orl_shader_source_finish). files: file names by source number of #line, for messages.
+// even after an error (orl_shader_source_finish). files: file names by source number of #line, for messages.
 struct shader_source {
     struct orl_bytes text;
     const char *files[ORL_SHADER_FILES_MAX]; // static strings

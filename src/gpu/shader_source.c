@@ -107,8 +107,6 @@ enum orl_result orl_shader_source_load(struct orl_gpu *gpu, const char *file,
         line += length + (line[length] == '\n');
     }
     ORL_THEN(result, expand(gpu, source, file, slots, 0));
-    if (result != ORL_OK)
-        orl_shader_source_finish(source);
     return result;
 }
 

@@ -208,7 +208,5 @@ enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *pa
     heif_image_release(decoded);
     orl_profile_destroy(&profile);
     close_heif(&file);
-    if (result != ORL_OK)
-        orl_image_finish(image);
     return result;
 }

@@ -58,7 +58,7 @@ enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, cons
                                size_t size, struct orl_image *image);
 
 // TIFF, RAW and HEIF are read from the file at `path`, as their libraries require. Values are linear
-// light, F32 x3; exif is filled from the header.
+// light, F32 x3; exif is filled from the header. After an error the caller releases what there is of the image.
 enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
                                  struct orl_picture_info *info, struct orl_exif *exif);
 enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,

@@ -263,7 +263,5 @@ enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *pa
     orl_profile_destroy(&profile);
     if (job.tiff)
         TIFFClose(job.tiff);
-    if (result != ORL_OK)
-        orl_image_finish(image);
     return result;
 }

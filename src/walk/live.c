@@ -201,8 +201,6 @@ enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scen
         live->has_thread = pthread_create(&live->thread, NULL, watch, live) == 0;
     if (result == ORL_OK && !live->has_thread)
         result = orl_fail(log, ORL_ERR_MEMORY, "no thread to watch %s", dir);
-    if (result != ORL_OK)
-        orl_live_stop(out);
     return result;
 }
 

@@ -10,7 +10,7 @@ struct live;
 // is not held out: a folder of pictures (live_cameras.h), or a pipe (live_pipes.h) if all are. The newest
 // time step counts that all cameras have; older ones that were not shown by then are left out.
 // Silhouettes are what differs from the scene's pictures of the empty place. ORL_ERR_DATA: the scene has
-// no silhouettes or no such pictures.
+// no silhouettes or no such pictures. orl_live_stop is needed even after an error.
 enum orl_result orl_live_start(const struct orl_log *log, struct orl_scene *scene, const char *dir,
                                struct live **live) ORL_CHECK_RESULT;
 // Says what came and what was missing.

@@ -143,8 +143,6 @@ enum orl_result orl_live_pipes_start(const struct orl_live_cameras *cameras, str
         pipes->has_thread = pthread_create(&pipes->thread, NULL, read_pipes, pipes) == 0;
     if (result == ORL_OK && !pipes->has_thread)
         result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read %s", pipes->pipes[0].path);
-    if (result != ORL_OK)
-        orl_live_pipes_stop(pipes_out);
     return result;
 }
 

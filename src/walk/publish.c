@@ -133,24 +133,21 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
     struct orl_publish_params params = *asked;
     char *title = NULL;
     *report = (struct orl_publish_report){0};
-    struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
-                        .report = report, .folder = ""};
     struct orl_new_dir dir;
+    struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
+                        .report = report, .dir = dir.path, .folder = ""};
     enum orl_result result = orl_new_dir_begin_over(log, params.out, &dir);
     ORL_THEN(result, check_out(log, params.out, params.single_file));
     ORL_THEN(result, orl_walk_settings_read(log, scene, &site.settings));
-    if (result != ORL_OK)
-        goto end;
-    params.title = title = orl_walk_title(log, scene, asked->title, site.settings);
-    site.dir = dir.path;
-    result = title ? make_renderer(&site) : ORL_ERR_MEMORY;
+    if (result == ORL_OK)
+        params.title = title = orl_walk_title(log, scene, asked->title, site.settings);
+    ORL_THEN(result, title ? make_renderer(&site) : ORL_ERR_MEMORY);
     ORL_THEN(result, write_site(&site));
     if (result == ORL_OK)
         report->bytes = all_bytes(&site);
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
                                     : replace_site(&site, &dir);
-end:
     orl_new_dir_abort(log, &dir);
     orl_renderer_destroy(&site.renderer);
     orl_soft_raster_finish(gpu, &site.soft);

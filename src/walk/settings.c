@@ -168,13 +168,8 @@ enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct o
         *settings = json_object();
         return *settings ? ORL_OK : ORL_ERR_MEMORY;
     }
-    enum orl_result result = orl_json_read(log, path, settings);
-    ORL_THEN(result, orl_walk_settings_check(log, path, *settings));
-    if (result != ORL_OK) {
-        json_decref(*settings);
-        *settings = NULL;
-    }
-    return result;
+    ORL_TRY(orl_json_read(log, path, settings));
+    return orl_walk_settings_check(log, path, *settings);
 }
 
 enum orl_result orl_walk_settings_write(const struct orl_log *log, const struct orl_scene *scene,

@@ -10,7 +10,7 @@
 // Checks settings that came from `where`, a file or a client. ORL_ERR_FORMAT, logged: what is wrong.
 enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,
                                         const json_t *settings) ORL_CHECK_RESULT;
-// Reads the scene's settings, released with json_decref; an empty object if it has none.
+// Reads the scene's settings, released with json_decref even after an error; an empty object if it has none.
 enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct orl_scene *scene,
                                        json_t **settings) ORL_CHECK_RESULT;
 // Writes settings that have been checked, atomically.
