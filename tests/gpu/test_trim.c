@@ -200,7 +200,7 @@ static void trim(const struct fixture *f, double tolerance_db, double tolerance_
 {
     const struct orl_choice start = {.method = orl_method_find(NULL, "oriel"),
                                      .params = orl_method_find(NULL, "oriel")->params};
-    char *out = orl_path_join(NULL, f->dir, "../trimmed");
+    char *out = orl_format(NULL, "%s-trimmed", f->dir);
     const struct orl_trim_params params = {
         .start = &start, .keep_options = true, .out = out, .tolerance_db = tolerance_db,
         .tolerance_ssim = tolerance_ssim,
@@ -219,7 +219,7 @@ static void a_budget_that_cannot_be_kept_is_refused(void **state)
     const struct orl_choice start = {.method = orl_method_find(NULL, "points"),
                                      .params = orl_method_find(NULL, "points")->params};
     setup_same_places(&f);
-    char *out = orl_path_join(NULL, f.dir, "../too-small");
+    char *out = orl_format(NULL, "%s-too-small", f.dir);
     const struct orl_trim_params params = {.start = &start, .keep_options = true, .out = out,
                                            .max_mib = 1e-6, .views = 2, .size_divide = 1};
     assert_int_equal(orl_trim_run(gpu, &f.scene, &params, &result), ORL_ERR_DATA);
@@ -361,7 +361,7 @@ static void a_photograph_that_repeats_another_goes(void **state)
     setup_same_places(&f);
     move_to_folder(&f);
     save_scene(&f);
-    char *out = orl_path_join(NULL, f.dir, "../trimmed-scene");
+    char *out = orl_format(NULL, "%s-trimmed-scene", f.dir);
     assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
     assert_int_equal(orl_scene_open(NULL, f.dir, &whole), ORL_OK);
     const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
@@ -401,7 +401,7 @@ static void photographs_that_stand_close_go(void **state)
     for (size_t k = 0; k < PHOTOS; k++)
         add_striped(&f, 0.1 * (double)k - 2);
     save_scene(&f);
-    char *out = orl_path_join(NULL, f.dir, "../trimmed-row");
+    char *out = orl_format(NULL, "%s-trimmed-row", f.dir);
     assert_int_equal(orl_dir_remove(NULL, out), ORL_OK);
     assert_int_equal(orl_scene_open(NULL, f.dir, &whole), ORL_OK);
     const struct orl_choice start = {.method = orl_method_find(NULL, "airieau"),
