@@ -33,7 +33,7 @@ static int nearest_series(const double *sorted, size_t count, double step_ev, do
 }
 
 enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
-                                    size_t count, double step_ev, int *series_count)
+                                    size_t count, double step_ev, bool stays, int *series_count)
 {
     size_t known = 0;
     double *sorted = orl_array(log, count, sizeof *sorted);
@@ -51,7 +51,8 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
         // Without a median, no exposure can be relative to it, so all count as unknown.
         e->known = e->known && known;
         e->series = nearest_series(sorted, known, step_ev, e->known ? e->ev : median);
-        e->ev = e->known ? e->ev - median : 0;
+        if (!stays)
+            e->ev = e->known ? e->ev - median : 0;
     }
     free(sorted);
     return ORL_OK;
@@ -142,7 +143,7 @@ static enum orl_result set_exposures(struct exposing *e)
         photo->from = orl_source_exposure(e->job, photo->source, &e->exposures[i].ev);
         e->exposures[i].known = photo->from != ORL_EXPOSURE_UNKNOWN;
     }
-    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV,
+    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV, false,
                                &e->series_count);
 }
 
@@ -169,17 +170,9 @@ static enum orl_result estimate_exposures(struct exposing *e)
              "expose: exposures of %zu photographs are not told; estimated from the scene, "
              "relative to each other", estimated);
     // The estimated exposures keep the scale of the gains.
-    double *ev = orl_array(e->job->log, e->count, sizeof *ev);
-    ORL_TRY_MEMORY(ev);
-    for (size_t i = 0; i < e->count; i++)
-        ev[i] = e->exposures[i].ev;
-    enum orl_result result = orl_exposures_group(
-        e->job->log, e->exposures, e->count,
-        known ? ORL_EXPOSURE_STEP_EV : ORL_ESTIMATED_STEP_EV, &e->series_count);
-    for (size_t i = 0; i < e->count; i++)
-        e->exposures[i].ev = ev[i];
-    free(ev);
-    return result;
+    return orl_exposures_group(e->job->log, e->exposures, e->count,
+                               known ? ORL_EXPOSURE_STEP_EV : ORL_ESTIMATED_STEP_EV, true,
+                               &e->series_count);
 }
 
 // --- samples, responses, gains ---
@@ -359,7 +352,7 @@ static enum orl_result heed_pictures(struct exposing *e, bool *again)
         e->exposures[i].known = false;
         e->photos[i].from = ORL_EXPOSURE_UNKNOWN;
     }
-    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV,
+    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV, false,
                                &e->series_count);
 }
 

@@ -7,7 +7,7 @@
 struct orl_exposure {
     bool known;  // in: true when ev is set
     bool test;   // in: held out; excluded from the median and the series
-    double ev;   // in: log2 of exposure; out: relative to the median, 0 if unknown
+    double ev;   // in: log2 of exposure; out, unless it is to stay: relative to the median, 0 if unknown
     int series;  // out: from 0, darkest first
 };
 
@@ -20,7 +20,7 @@ struct orl_exposure {
 // The median and the series come from known exposures of photographs that are not held out. Other
 // photographs join the nearest series. Returns the number of series.
 enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
-                                    size_t count, double step_ev,
+                                    size_t count, double step_ev, bool stays,
                                     int *series_count) ORL_CHECK_RESULT;
 
 #endif

@@ -32,7 +32,7 @@ static enum orl_result find_exposures(const struct orl_log *log, const struct or
         series[i] = (struct orl_exposure){.known = photos[i].use, .ev = photos[i].ev};
         e->ev[i] = INFINITY;
     }
-    enum orl_result result = orl_exposures_group(log, series, photo_count, ORL_EXPOSURE_STEP_EV, &e->count);
+    enum orl_result result = orl_exposures_group(log, series, photo_count, ORL_EXPOSURE_STEP_EV, true, &e->count);
     for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
         e->of[i] = photos[i].use ? series[i].series : -1;
         if (photos[i].use)

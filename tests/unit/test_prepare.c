@@ -48,7 +48,7 @@ static void groups_exposures(void **state)
     };
     int series;
     assert_int_equal(
-        orl_exposures_group(NULL, e, ORL_COUNT(e), ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
+        orl_exposures_group(NULL, e, ORL_COUNT(e), ORL_EXPOSURE_STEP_EV, false, &series), ORL_OK);
     assert_int_equal(series, 2);
     const int expected[] = {1, 0, 1, 1, 1, 0, 1};
     for (size_t i = 0; i < ORL_COUNT(e); i++)
@@ -60,12 +60,12 @@ static void groups_exposures(void **state)
     assert_float_equal(e[6].ev, 11.05, 1e-12);
     // As far apart as a step: two series. The median is that of the lower one.
     struct orl_exposure two[2] = {{.known = true, .ev = ORL_EXPOSURE_STEP_EV}, {.known = true}};
-    assert_int_equal(orl_exposures_group(NULL, two, 2, ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
+    assert_int_equal(orl_exposures_group(NULL, two, 2, ORL_EXPOSURE_STEP_EV, false, &series), ORL_OK);
     assert_int_equal(series, 2);
     assert_float_equal(two[0].ev, ORL_EXPOSURE_STEP_EV, 0);
     assert_float_equal(two[1].ev, 0, 0);
     struct orl_exposure none[2] = {{0}, {.known = true, .test = true, .ev = 5}};
-    assert_int_equal(orl_exposures_group(NULL, none, 2, ORL_EXPOSURE_STEP_EV, &series), ORL_OK);
+    assert_int_equal(orl_exposures_group(NULL, none, 2, ORL_EXPOSURE_STEP_EV, false, &series), ORL_OK);
     assert_int_equal(series, 1);
     assert_false(none[1].known);
     assert_float_equal(none[1].ev, 0, 0);
