@@ -19,27 +19,6 @@ static int compare_sources(const void *a, const void *b)
     return strcmp(((const struct orl_source *)a)->name, ((const struct orl_source *)b)->name);
 }
 
-// Moves a source to the end of the *kept ones before it.
-static void keep_source(struct orl_job *job, struct orl_source *source, size_t *kept)
-{
-    if (&job->sources[*kept] != source) {
-        job->sources[*kept] = *source;
-        memset(source, 0, sizeof *source);
-    }
-    ++*kept;
-}
-
-// Asks of each source whether it is dropped; `drops` is true if it has dropped it. The first `kept` sources are those
-// that have been kept so far.
-static void drop_each(struct orl_job *job, bool (*drops)(struct orl_job *job, struct orl_source *source, size_t kept))
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < job->source_count; i++)
-        if (!drops(job, &job->sources[i], kept))
-            keep_source(job, &job->sources[i], &kept);
-    job->source_count = kept;
-}
-
 static void drop(struct orl_job *job, struct orl_source *source, const char *name, const char *why)
 {
     orl_photos_skip(job, name, why);
@@ -67,37 +46,47 @@ static void skip_for(struct orl_job *job, struct orl_source *source, const struc
     drop(job, source, source->path, why + strspn(why, ": "));
 }
 
-// Drops an unreadable photograph that stands for a JPEG of the same name, so that the JPEG is used.
-static bool drop_unreadable(struct orl_job *job, struct orl_source *source, size_t kept)
+// Drops unreadable photographs that stand for a JPEG of the same name, so that the JPEG is used.
+static void drop_unreadable(struct orl_job *job)
 {
-    (void)kept;
-    struct reason reason = {"cannot be read"};
-    struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
-    struct orl_picture_info info;
-    if (!orl_develop_wanted(source->given) || orl_picture_inspect(&log, source->path, &info) == ORL_OK)
-        return false;
-    skip_for(job, source, &reason);
-    return true;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        struct reason reason = {"cannot be read"};
+        struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
+        struct orl_picture_info info;
+        if (orl_develop_wanted(source->given) && orl_picture_inspect(&log, source->path, &info) != ORL_OK)
+            skip_for(job, source, &reason);
+    }
+    orl_photos_close_up(job);
 }
 
-// Drops the JPEG that a camera writes beside a RAW file: two photographs from one place would
-// mislead COLMAP.
-static bool drop_jpeg_of_raw(struct orl_job *job, struct orl_source *source, size_t kept)
+// The RAW file beside which a camera wrote this JPEG; NULL: there is none.
+static const char *raw_of(const struct orl_job *job, const char *given)
 {
-    (void)kept;
-    size_t stem = orl_path_stem(source->given);
-    bool may_be = orl_path_has_extension(source->given, "jpg jpeg");
-    for (size_t k = 0; may_be && k < job->source_count; k++) {
+    size_t stem = orl_path_stem(given);
+    bool may_have = orl_path_has_extension(given, "jpg jpeg");
+    for (size_t k = 0; may_have && k < job->source_count; k++) {
         const char *other = job->sources[k].given;
-        char why[512];
-        if (!other || !orl_develop_wanted(other) || orl_path_stem(other) != stem ||
-            strncasecmp(other, source->given, stem) != 0)
-            continue;
-        snprintf(why, sizeof why, "%s holds more of the same photograph", other);
-        drop(job, source, source->path, why);
-        return true;
+        if (other && orl_develop_wanted(other) && orl_path_stem(other) == stem &&
+            strncasecmp(other, given, stem) == 0)
+            return other;
     }
-    return false;
+    return NULL;
+}
+
+// Two photographs from one place would mislead COLMAP.
+static void drop_jpegs_of_raw(struct orl_job *job)
+{
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        const char *raw = raw_of(job, source->given);
+        char why[512];
+        if (!raw)
+            continue;
+        snprintf(why, sizeof why, "%s holds more of the same photograph", raw);
+        drop(job, source, source->path, why);
+    }
+    orl_photos_close_up(job);
 }
 
 // A file given twice counts once. Two files of one name are an error, since COLMAP cannot tell them
@@ -106,22 +95,21 @@ static enum orl_result drop_duplicates(struct orl_job *job)
 {
     if (job->source_count)
         qsort(job->sources, job->source_count, sizeof *job->sources, compare_sources);
-    size_t kept = 0;
+    const struct orl_source *last = NULL;
     for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
-        struct orl_source *last = kept ? &job->sources[kept - 1] : NULL;
-        if (last && strcmp(last->name, source->name) == 0) {
-            if (strcmp(last->path, source->path) != 0)
-                return orl_fail(job->log, ORL_ERR_ARGUMENT,
-                                "%s and %s have the same name, %s: rename one, or give the "
-                                "folder that holds both", last->path, source->path, source->name);
-            orl_source_finish(source);
-            job->given--;
+        if (!last || strcmp(last->name, source->name) != 0) {
+            last = source;
             continue;
         }
-        keep_source(job, source, &kept);
+        if (strcmp(last->path, source->path) != 0)
+            return orl_fail(job->log, ORL_ERR_ARGUMENT,
+                            "%s and %s have the same name, %s: rename one, or give the "
+                            "folder that holds both", last->path, source->path, source->name);
+        orl_source_finish(source);
+        job->given--;
     }
-    job->source_count = kept;
+    orl_photos_close_up(job);
     return ORL_OK;
 }
 
@@ -173,7 +161,7 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
 
 static enum orl_result inspect_all(struct orl_job *job)
 {
-    size_t kept = 0, gain_maps = 0;
+    size_t gain_maps = 0;
     for (size_t i = 0; i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
         if (orl_progress_cancelled(job->progress))
@@ -181,33 +169,34 @@ static enum orl_result inspect_all(struct orl_job *job)
         orl_progress_report(job->progress, "collect", (double)i, (double)job->source_count,
                             source->name);
         struct reason reason = {"cannot be read"};
-        if (!inspect(job, source, &reason)) {
+        if (inspect(job, source, &reason))
+            gain_maps += source->gain_map;
+        else
             skip_for(job, source, &reason);
-            continue;
-        }
-        gain_maps += source->gain_map;
-        keep_source(job, source, &kept);
     }
-    job->source_count = kept;
+    orl_photos_close_up(job);
     if (gain_maps)
-        orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, kept);
+        orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, job->source_count);
     orl_progress_report(job->progress, "collect", 1, 1, NULL);
     return ORL_OK;
 }
 
-// Drops a copy of a photograph whose name comes before. One photograph under two names (a link, a copy)
+// Drops copies of photographs whose names come before. One photograph under two names (a link, a copy)
 // would be matched with itself, and a held-out one would be known to the renderer.
-static bool drop_copy(struct orl_job *job, struct orl_source *source, size_t kept)
+static void drop_copies(struct orl_job *job)
 {
-    for (size_t k = 0; k < kept; k++) {
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source *source = &job->sources[i];
+        size_t k = 0;
         char why[512];
-        if (job->sources[k].hash != source->hash)
+        while (k < i && !(job->sources[k].name && job->sources[k].hash == source->hash))
+            k++;
+        if (k == i)
             continue;
         snprintf(why, sizeof why, "the same file as %s", job->sources[k].given);
         drop(job, source, source->given, why); // the path may be that of the other
-        return true;
     }
-    return false;
+    orl_photos_close_up(job);
 }
 
 // Names blurred photographs and those that show the picture of another; leaves out those that the
@@ -216,33 +205,23 @@ static enum orl_result drop_doubtful(struct orl_job *job)
 {
     enum orl_leave_out leave_out = job->params->leave_out;
     struct orl_doubt *doubts = orl_array(job->log, job->source_count, sizeof *doubts);
-    char **names = orl_array(job->log, job->source_count, sizeof *names);
-    enum orl_result result = doubts && names ? orl_doubts_find(job, doubts) : ORL_ERR_MEMORY;
-    size_t kept = 0, count = result == ORL_OK ? job->source_count : 0;
-    for (size_t i = 0; i < count; i++)
-        names[i] = job->sources[i].given;
-    for (size_t i = 0; i < count; i++) {
+    enum orl_result result = doubts ? orl_doubts_find(job, doubts) : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         struct orl_source *source = &job->sources[i];
         char why[512] = "";
         if (doubts[i].same >= 0)
-            snprintf(why, sizeof why, "shows the same as %s", names[doubts[i].same]);
+            snprintf(why, sizeof why, "shows the same as %s", job->sources[doubts[i].same].given);
         else if (doubts[i].blurred)
             snprintf(why, sizeof why, "blurred");
-        bool out = (doubts[i].same >= 0 && leave_out >= ORL_LEAVE_OUT_DUPLICATES) ||
-                   (doubts[i].blurred && (leave_out == ORL_LEAVE_OUT_BLURRED ||
-                                          leave_out == ORL_LEAVE_OUT_BOTH));
-        if (out) {
+        if ((doubts[i].same >= 0 && leave_out >= ORL_LEAVE_OUT_DUPLICATES) ||
+            (doubts[i].blurred && (leave_out == ORL_LEAVE_OUT_BLURRED ||
+                                   leave_out == ORL_LEAVE_OUT_BOTH)))
             drop(job, source, source->path, why);
-        } else {
-            if (*why)
-                orl_logf(job->log, ORL_LOG_WARNING, "%s: %s (see --leave-out)", source->given, why);
-            keep_source(job, source, &kept);
-        }
+        else if (*why)
+            orl_logf(job->log, ORL_LOG_WARNING, "%s: %s (see --leave-out)", source->given, why);
     }
-    if (result == ORL_OK)
-        job->source_count = kept;
+    orl_photos_close_up(job);
     free(doubts);
-    free(names);
     return result;
 }
 
@@ -298,11 +277,11 @@ enum orl_result orl_stage_collect(struct orl_job *job)
 {
     ORL_TRY(orl_photos_list(job));
     orl_masks_set_aside(job);
-    drop_each(job, drop_unreadable);
-    drop_each(job, drop_jpeg_of_raw);
+    drop_unreadable(job);
+    drop_jpegs_of_raw(job);
     ORL_TRY(drop_duplicates(job));
     ORL_TRY(inspect_all(job));
-    drop_each(job, drop_copy);
+    drop_copies(job);
     ORL_TRY(drop_doubtful(job));
     if (job->source_count < 3)
         return too_few(job);

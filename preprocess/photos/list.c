@@ -60,6 +60,18 @@ void orl_photos_skip(struct orl_job *job, const char *name, const char *why)
     json_array_append_new(job->skipped, entry);
 }
 
+void orl_photos_close_up(struct orl_job *job)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < job->source_count; i++) {
+        struct orl_source source = job->sources[i];
+        memset(&job->sources[i], 0, sizeof source);
+        if (source.name)
+            job->sources[kept++] = source;
+    }
+    job->source_count = kept;
+}
+
 // --- files ---
 
 // The scene's own name of a file at `given`, a path below a folder that was given.

@@ -12,5 +12,7 @@
 enum orl_result orl_photos_list(struct orl_job *job) ORL_CHECK_RESULT;
 // Records and reports a photograph that is not used.
 void orl_photos_skip(struct orl_job *job, const char *name, const char *why);
+// Closes the gaps that finished sources have left.
+void orl_photos_close_up(struct orl_job *job);
 
 #endif

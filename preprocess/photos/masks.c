@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "io/mask.h"
 #include "io/picture.h"
+#include "preprocess/photos/list.h"
 
 // --- masks among photographs ---
 
@@ -52,20 +53,17 @@ static bool is_mask(const struct orl_job *job, const char *path)
 
 void orl_masks_set_aside(struct orl_job *job)
 {
-    size_t kept = 0, masks = 0;
+    size_t masks = 0;
     char *first = NULL;
     for (size_t i = 0; i < job->source_count; i++) {
-        struct orl_source source = job->sources[i];
-        memset(&job->sources[i], 0, sizeof source);
-        if (!is_mask(job, source.given)) {
-            job->sources[kept++] = source;
+        struct orl_source *source = &job->sources[i];
+        if (!is_mask(job, source->given))
             continue;
-        }
         if (!masks++)
-            first = orl_strdup(job->log, source.given);
-        orl_source_finish(&source);
+            first = orl_strdup(job->log, source->given);
+        orl_source_finish(source);
     }
-    job->source_count = kept;
+    orl_photos_close_up(job);
     job->given -= masks;
     if (masks && !job->params->masks_dir)
         orl_logf(job->log, ORL_LOG_WARNING, "%zu masks among the photographs, as %s, are not used: --masks "
