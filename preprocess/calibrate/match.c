@@ -99,7 +99,7 @@ static enum orl_result match_features(const struct orl_job *job, const char *dat
     enum orl_result result = names ? orl_match_open_database(job, database, &db) : ORL_ERR_MEMORY;
     for (size_t i = 0; names && i < job->source_count; i++)
         names[i] = job->sources[i].name;
-    ORL_THEN(result, orl_raw_matches_write(job->log, &(struct orl_raw_matches_progress){
+    ORL_THEN(result, orl_raw_matches_write(job->log, &(struct orl_each){
                 .progress = job->progress, .done = (double)first,
                 .share = (1 - VERIFYING) * (double)count, .total = (double)list->count}, db, names,
                 job->source_count, list->items + first, count));

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "preprocess/job/threads.h"
 
 struct found {
     uint32_t (*matches)[2]; // owned; indices of features
@@ -74,8 +73,7 @@ static enum orl_result write_all(const struct work *work, struct orl_database *d
     return result == ORL_OK ? orl_database_commit(db) : result;
 }
 
-enum orl_result orl_raw_matches_write(const struct orl_log *log,
-                                      const struct orl_raw_matches_progress *progress,
+enum orl_result orl_raw_matches_write(const struct orl_log *log, const struct orl_each *progress,
                                       struct orl_database *db, const char *const *names,
                                       size_t photo_count, const struct orl_pair *pairs,
                                       size_t count)
@@ -86,10 +84,9 @@ enum orl_result orl_raw_matches_write(const struct orl_log *log,
     enum orl_result result = work.photos && work.found ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, read_features(&work, db, names));
     if (result == ORL_OK) {
-        result = orl_threads_each(&(struct orl_each){
-            .work = match_pair, .priv = &work, .count = count, .progress = progress->progress,
-            .step = "matching", .done = progress->done, .share = progress->share,
-            .total = progress->total});
+        struct orl_each each = *progress;
+        each.work = match_pair, each.priv = &work, each.count = count, each.step = "matching";
+        result = orl_threads_each(&each);
         if (result == ORL_ERR_MEMORY)
             orl_logf(log, ORL_LOG_ERROR, "no memory to match features");
     }

@@ -283,7 +283,7 @@ static void matches_are_written_for_colmap(void **state)
     (void)state;
     static const char *const names[] = {"a.jpg", "b.jpg", "c.jpg", "dark.jpg"};
     static const struct orl_pair pairs[] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}};
-    const struct orl_raw_matches_progress progress = {.share = 1, .total = 1};
+    const struct orl_each progress = {.share = 1, .total = 1};
     uint32_t matches[MANY][2];
     make_tables();
     for (int i = 0; i < 3; i++) {
@@ -329,7 +329,7 @@ static void matching_can_be_interrupted(void **state)
     static const char *const names[] = {"a.jpg", "b.jpg"};
     static const struct orl_pair pairs[] = {{0, 1}};
     const struct orl_progress cancel = {.cancelled = cancelled};
-    const struct orl_raw_matches_progress progress = {&cancel, 0, 1, 1};
+    const struct orl_each progress = {.progress = &cancel, .share = 1, .total = 1};
     uint32_t matches[MANY][2];
     static const int features[] = {1, 2, 3};
     make_tables();
