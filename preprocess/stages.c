@@ -286,14 +286,10 @@ static const char *old_key(const struct orl_job *job, int id)
     return orl_json_text(json_object_get(done_stages(job), stages[id].name), "key");
 }
 
-static bool has_key(const struct orl_job *job, int id)
-{
-    return old_key(job, id) != NULL;
-}
-
 static bool has_same_key(const struct orl_job *job, int id)
 {
-    return has_key(job, id) && strcmp(old_key(job, id), job->keys[id]) == 0;
+    const char *key = old_key(job, id);
+    return key && strcmp(key, job->keys[id]) == 0;
 }
 
 // Sets *sound when the record is as it was written and holds all that later steps need. An edited or
@@ -325,7 +321,7 @@ static enum orl_result look_for(const struct orl_job *job, enum orl_stage_id id,
     const char *why;
     // There is nothing to do for a stage that is not wanted, unless its result is to be removed.
     if (!is_wanted(job, id)) {
-        *there = !has_key(job, id);
+        *there = !old_key(job, id);
         return ORL_OK;
     }
     *there = false;
@@ -371,7 +367,7 @@ static enum orl_result invalidate(const struct orl_job *job, const bool *current
     bool all = true, changed = false;
     for (int i = 0; i < ORL_STAGE_COUNT; i++) {
         all = all && current[i];
-        changed = changed || (has_key(job, i) && !has_same_key(job, i));
+        changed = changed || (old_key(job, i) && !has_same_key(job, i));
         if (!current[i])
             json_object_del(done_stages(job), stages[i].name);
     }
