@@ -119,11 +119,6 @@ static enum orl_result write_json(const struct job *job, const char *name, json_
     return result;
 }
 
-static json_t *vector_json(const double v[3])
-{
-    return json_pack("[fff]", v[0], v[1], v[2]);
-}
-
 // The format of Inria's 3D Gaussian splatting: rotation is world_from_cam, row by row.
 static enum orl_result write_inria_cameras(const struct job *job)
 {
@@ -131,17 +126,13 @@ static enum orl_result write_inria_cameras(const struct job *job)
     for (int i = 0; i < job->params->count; i++) {
         const struct orl_view *view = &job->views[i];
         const double (*r)[3] = view->cam_from_world.r;
-        char name[16];
-        double centre[3];
-        snprintf(name, sizeof name, "%04d", i + 1);
-        orl_pose_centre(&view->cam_from_world, centre);
-        json_t *rows = json_array();
-        for (int k = 0; k < 3; k++)
-            json_array_append_new(rows, vector_json((double[]){r[0][k], r[1][k], r[2][k]}));
+        double at[3];
+        orl_pose_centre(&view->cam_from_world, at);
         json_array_append_new(
-            list, json_pack("{s:i, s:s, s:i, s:i, s:o, s:o, s:f, s:f}", "id", i, "img_name", name,
-                            "width", view->camera.width, "height", view->camera.height,
-                            "position", vector_json(centre), "rotation", rows, "fy",
+            list, json_pack("{s:i, s:o, s:i, s:i, s:[fff], s:[[fff],[fff],[fff]], s:f, s:f}", "id", i, "img_name",
+                            json_sprintf("%04d", i + 1), "width", view->camera.width, "height", view->camera.height,
+                            "position", at[0], at[1], at[2], "rotation", r[0][0], r[1][0], r[2][0],
+                            r[0][1], r[1][1], r[2][1], r[0][2], r[1][2], r[2][2], "fy",
                             view->camera.fy, "fx", view->camera.fx));
     }
     return write_json(job, "cameras.json", list);
@@ -152,12 +143,10 @@ static enum orl_result write_summary(const struct job *job)
     const struct orl_synth_params *p = job->params;
     json_t *photos = json_array();
     for (int i = 0; i < p->count; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "%04d.jpg", i + 1);
         const struct orl_synth_sensor sensor = orl_synth_sensor(p, i);
         json_array_append_new(
-            photos, json_pack("{s:s, s:f, s:f, s:[f,f,f]}", "photo", name, "exposure_ev",
-                              sensor.exposure_ev, "exposure_s",
+            photos, json_pack("{s:o, s:f, s:f, s:[f,f,f]}", "photo", json_sprintf("%04d.jpg", i + 1),
+                              "exposure_ev", sensor.exposure_ev, "exposure_s",
                               BASE_EXPOSURE_S * exp2(sensor.exposure_ev), "drift_ev",
                               sensor.drift_ev[0], sensor.drift_ev[1], sensor.drift_ev[2]));
     }

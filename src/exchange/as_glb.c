@@ -130,22 +130,15 @@ static json_t *describe(const struct orl_scene *scene, const struct orl_gaussian
 
 // --- the file ---
 
-static void write_u32(FILE *stream, uint32_t value)
-{
-    const uint8_t bytes[4] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16),
-                              (uint8_t)(value >> 24)};
-    fwrite(bytes, sizeof bytes, 1, stream);
-}
-
 static void write_all(FILE *stream, const struct orl_gaussians *g, const char *json)
 {
     size_t length = strlen(json), padded = (length + 3) / 4 * 4, bytes = g->points->count * stride(g);
+    // Of the file: its version and length; of each chunk: its length.
+    const uint32_t head[] = {2, (uint32_t)(12 + 8 + padded + 8 + bytes), (uint32_t)padded}, rest = (uint32_t)bytes;
     fputs("glTF", stream);
-    write_u32(stream, 2);
-    write_u32(stream, (uint32_t)(12 + 8 + padded + 8 + bytes));
-    write_u32(stream, (uint32_t)padded);
+    fwrite(head, sizeof head, 1, stream);
     fprintf(stream, "JSON%s%*s", json, (int)(padded - length), "");
-    write_u32(stream, (uint32_t)bytes);
+    fwrite(&rest, sizeof rest, 1, stream);
     fwrite("BIN", 4, 1, stream); // with its 0
     for (size_t i = 0; i < g->points->count; i++) {
         struct vertex vertex;
