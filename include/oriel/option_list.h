@@ -67,13 +67,10 @@
         "visibility=soft visibility=shadow visibility=opaque paint=tiled", \
         ORL_TRIES(0.003, 0.005, 0.01, 0.02, 0.04), \
         "How far two depths may differ and still count as the same surface.") \
-    NUMBER(min_support, 0, 0, 25, "pixels of 5x5", "proxy=splats", ORL_TRIES(0, 4, 8, 12, 16), \
-        "How many pixels around it must have a surface at the same depth, or else a pixel is " \
-        "dropped as an outlier. Above 0, a hole with 13 such pixels around it is closed.") \
     NUMBER(front_layer, 0, 0, 0.1, "fraction of depth", "proxy=splats", \
         ORL_TRIES(0, 0.005, 0.01, 0.02), \
-        "Splats no farther than this behind the nearest one are averaged with it. With 0 the " \
-        "nearest splat alone counts.") \
+        "Splats no farther than this behind the nearest one are averaged with it, and one that is " \
+        "farther behind all surfaces around than this is covered by them. With 0 the nearest splat counts.") \
     NUMBER(splat_scale, 1, 0.01, 16, "", "proxy=splats", ORL_TRIES(0.7, 1, 1.4), \
         "Multiplies the radii of the splats. Larger splats close more holes and fatten edges.") \
     NUMBER(reconstructions, 1, 1, 9, "pictures", "proxy=splats", ORL_NO_TRIES, \

@@ -64,7 +64,7 @@ void main()
 #else
         float own_depth = imageLoad(depth_out, at).x;
 #endif
-        surfel s = filled(target, own_depth, disc, centre, ray, weight);
+        surfel s = filled(target, supported(own_depth, disc), disc, centre, ray, weight);
         bool kept = s.radius == 0.0, inside;
         s.normal = normalize(s.normal);
         float depth = surfel_depth_at(s, camera_ray(target + s.displacement), camera_ray(target),

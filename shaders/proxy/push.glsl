@@ -1,6 +1,17 @@
-// What a pixel gets from the coarser level of the pyramid, for the renderer and for the page. The file
-// that includes this one defines camera_ray.
+// Which pixels keep their own surface, and what others get from the coarser level of the pyramid, for the renderer and for
+// the page. The file that includes this one defines camera_ray and front_layer.
 #include "proxy/surfel.glsl"
+
+// The depth of a pixel's own splat; 0 if none of the coarse surfels around, its own pixel's among them, comes within
+// front_layer of it: it is seen through a gap of the surface before it, and is filled like an empty pixel. With
+// front_layer 0 every splat counts.
+float supported(float own_depth, surfel disc[4])
+{
+    bool agrees = front_layer == 0.0;
+    for (int i = 0; i < 4; i++)
+        agrees = agrees || abs(disc[i].depth - own_depth) <= front_layer * own_depth;
+    return agrees ? own_depth : 0.0;
+}
 
 // The surfel that the coarse surfels (disc) give to the pixel with centre `target` and own near
 // depth own_near (0: empty); an empty surfel if the pixel stays as it is. centre: of the coarse

@@ -50,7 +50,7 @@ ORL_BLOCK(pyramid_block)
     VEC4(camera); // fx fy cx cy, pixels of level 0
     IVEC2(level_size);  // of the written level, pixels
     INT(level_number);
-    INT(min_support); // opt.min_support, rounded to a whole number
+    FLOAT(front_layer); // opt.front_layer
 };
 #endif
 

@@ -26,7 +26,7 @@ static const double ssim_per_db = 0.1;
 // Options whose cheaper values save time: levels of their own, each of which is tried from every state.
 static const char *const cheaper[] = {
     "sampling=bilinear", "antialias=off", "median=off", "guess_blur=0",
-    "outliers=0", "min_support=0", "photos_per_pixel=2"};
+    "outliers=0", "front_layer=0", "photos_per_pixel=2"};
 
 // `max`: the last level. `share`: of what is left of the tolerances.
 struct rung {

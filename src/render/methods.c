@@ -19,7 +19,7 @@
 
 // What makes depth and edges better, and frames slower.
 #define REFINED \
-    , .front_layer = 0.01f, .min_support = 8, .guess_depths = 16, .antialias = ORL_ANTIALIAS_ON
+    , .front_layer = 0.01f, .guess_depths = 16, .antialias = ORL_ANTIALIAS_ON
 
 static const struct orl_combine combine_top = {"top", .sweeps = 2, .states = 2};
 static const struct orl_combine combine_sigma = {"sigma", .sweeps = 2, .states = 2};
@@ -33,7 +33,7 @@ const struct orl_method orl_methods[] = {
     {"oriel-high", "the mean of five pictures of oriel, for stills and video", "as oriel",
      {DEFAULTS TILED REFINED, .reconstructions = 5}, .variant_of = "oriel"},
     {"oriel-fast", "oriel from two photographs a pixel, of three, sampled bilinearly", "as oriel",
-     {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .min_support = 8, .photos_per_pixel = 2}},
+     {DEFAULTS TILED, .sampling = ORL_SAMPLING_BILINEAR, .front_layer = 0.01f, .photos_per_pixel = 2}},
     {"airieau", "all photographs, shadow test, cos(theta)/delta", "Airieau 2012, eq. of 5.3",
      {DEFAULTS}},
     {"ulr", "the best four photographs by angle and resolution",
@@ -61,7 +61,7 @@ const struct orl_method orl_methods[] = {
      "Goldluecke 2003, section 3",
      {DEFAULTS .proxy = &orl_proxy_voxels, .paint = &orl_paint_billboards, .fill = ORL_FILL_NONE}},
     {"points", "the splats' own colour: the baseline", "-",
-     {DEFAULTS .paint = &orl_paint_points, .front_layer = 0.01f, .min_support = 8}},
+     {DEFAULTS .paint = &orl_paint_points, .front_layer = 0.01f}},
     {0},
 };
 

@@ -157,7 +157,6 @@ static enum orl_result draw_depth(struct site *site, const struct orl_view *view
     if (!site->carves) {
         params.splat_scale = site->render.splat_scale;
         params.front_layer = site->render.front_layer;
-        params.min_support = site->render.min_support;
     }
     params.leave_out = ORL_LAYER_NORMAL | ORL_LAYER_COVERAGE | ORL_LAYER_CONFIDENCE;
     struct orl_frame frame;

@@ -8,7 +8,7 @@ set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
 oriel=$1
 shift
-without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignment=off min_support=0
+without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignment=off
     front_layer=0 outliers=0 sampling=bilinear)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

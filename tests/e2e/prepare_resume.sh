@@ -220,7 +220,7 @@ says "expose: done already"
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --occluders none
 grep -q "are done again" "$work/err" && fail "a stage that is not wanted is missed"
 # What tune keeps stays, until the scene is made anew.
-run 0 tune "$scene" --method points --set splat_scale=2 --only min_support --apply --budget 0.000001
+run 0 tune "$scene" --method points --set splat_scale=2 --only front_layer --apply --budget 0.000001
 run 0 prepare "$work/p" --out "$scene" --test-list 0 --resume --occluders none
 grep -q '"splat_scale": 2' "$scene/scene.json" || fail "what tune found was not kept"
 run 0 prepare "$work/p" --out "$work/few" --test-list 0,1,2

@@ -12,11 +12,11 @@ cp "ws/images/${names[4]}" whole.jpg
 head -c 700 whole.jpg >"ws/images/${names[4]}"
 
 tune=("$oriel" tune ws --method airieau --size-divide 1)
-runs 0 "${tune[@]}" --set depth_tolerance=0.0002 --only depth_tolerance,min_support --json a.json
+runs 0 "${tune[@]}" --set depth_tolerance=0.0002 --only depth_tolerance,splat_scale --json a.json
 grep -q "^--set depth_tolerance=" stdout.txt || fail "a tolerance far too small was left as it is"
 grep -q '"tuned"' ws/scene.json && fail "kept without --apply"
 awk '/^airieau: / { exit !($2 > $5 + 0.5) }' stdout.txt || fail "hardly better than the start"
-runs 0 "${tune[@]}" --set depth_tolerance=0.0002 --only depth_tolerance,min_support --json b.json
+runs 0 "${tune[@]}" --set depth_tolerance=0.0002 --only depth_tolerance,splat_scale --json b.json
 cmp -s a.json b.json || fail "a second run says something else"
 for field in settings before_psnr_db psnr_db photographs size_divide complete scene method device \
     trials key value ssim kept; do
@@ -43,7 +43,7 @@ cmp -s tuned.png same.png || fail "render does not use what was kept"
 cmp -s tuned.png start.png && fail "--set does not win"
 cp ws/scene.json kept.json
 # Names that the search did not change are kept with the numbers that were found under them.
-runs 0 "${tune[@]}" --set visibility=soft --only min_support --apply --quiet
+runs 0 "${tune[@]}" --set visibility=soft --only splat_scale --apply --quiet
 grep -q "^--set visibility=soft$" stdout.txt || fail "does not print a setting with a name"
 runs 0 "$oriel" info ws
 grep -q "visibility=soft" stdout.txt || fail "forgets a setting with a name"

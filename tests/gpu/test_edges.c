@@ -161,7 +161,7 @@ static struct orl_frame wall(enum wall_picture picture, bool strays, int coarser
     repaint_photo(&f, &image);
     struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
     params.antialias = antialias;
-    params.min_support = params.front_layer = 0; // strays stay
+    params.front_layer = 0; // splats that are alone stay
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE / coarser, FOCAL / coarser), &params, 0);
     teardown(&f);
     return frame;

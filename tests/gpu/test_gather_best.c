@@ -128,7 +128,7 @@ static void what_is_small_in_a_tile_is_painted(void **state)
     crop.camera.cx -= 40 * x / 2;
     add_photo(&f, crop, green);
     struct orl_render_params params = best();
-    params.min_support = 0; // which takes such plates for strays
+    params.front_layer = 0; // with which such plates are covered
     struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
     assert_float_equal(frame.depth.f32[24 * 48 + AT], 2, 0.01);
     assert_float_equal(color_at(&frame, AT, 24)[1], 1, 1e-3);

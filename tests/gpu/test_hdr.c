@@ -416,7 +416,7 @@ static void what_is_small_in_a_tile_is_painted(void **state)
     add_photo(&f, behind, 0, wall_light);
     add_photo(&f, alone, 0, shade_light);
     struct orl_hdr_params params = params_of(ORL_HDR_FUSED, "oriel");
-    params.render.min_support = 0;
+    params.render.front_layer = 0;
     struct orl_frame frame = draw(&f, &params);
     assert_float_equal(frame.depth.f32[AT * SIDE + AT], 2, 0.01);
     assert_color(&frame, AT * SIDE + AT, (float[]){WALL[0] / 64, WALL[1] / 64, WALL[2] / 64}, 0.1);

@@ -1,4 +1,6 @@
 // Linked programs kept between devices: found again, and compiled anew when damaged.
+#include <math.h>
+
 #include "gpu_test.h"
 #include "core/file.h"
 #include "shared/render_blocks.h"
@@ -15,37 +17,34 @@ static struct orl_gpu *open_device(const char *cache_dir)
     return gpu;
 }
 
-// Whether a device finds support.comp in the cache; what it has must work: a flat wall of 8x8
-// pixels with one pixel sticking out, which is dropped.
+// Whether a device finds mean.comp in the cache; what it has must work: it begins a sum of square roots.
 static size_t create_and_run(const char *defines)
 {
     enum { SIDE = 8 };
     struct orl_gpu *gpu = open_device(dir);
-    struct orl_tex *in = NULL, *out = NULL, *normal = NULL;
-    float depth[SIDE * SIDE];
-    for (int i = 0; i < SIDE * SIDE; i++)
-        depth[i] = i == 20 ? 1 : 2;
-    struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_R32F, .tag = "t"};
-    assert_int_equal(orl_tex_create(gpu, &params, &in), ORL_OK);
-    assert_int_equal(orl_tex_create(gpu, &params, &out), ORL_OK);
-    params.format = GL_RGBA16F;
-    assert_int_equal(orl_tex_create(gpu, &params, &normal), ORL_OK);
-    orl_tex_write(in, GL_RED, GL_FLOAT, depth);
-    struct pyramid_block block = {.level_size = {SIDE, SIDE}, .min_support = 8};
-    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, defines),
+    struct orl_tex *picture = NULL, *sum = NULL;
+    float values[SIDE * SIDE][4];
+    for (int i = 0; i < 4 * SIDE * SIDE; i++)
+        values[i / 4][i % 4] = (float)i;
+    struct orl_tex_params params = {.width = SIDE, .height = SIDE, .format = GL_RGBA32F, .tag = "t"};
+    assert_int_equal(orl_tex_create(gpu, &params, &picture), ORL_OK);
+    assert_int_equal(orl_tex_create(gpu, &params, &sum), ORL_OK);
+    orl_tex_write(picture, GL_RGBA, GL_FLOAT, values);
+    struct image_block block = {.image_size = {SIDE, SIDE}, .pictures = {0, 2}};
+    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/mean.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block, .groups = {1, 1, 1},
-                             .images = {{in, 0, GL_READ_ONLY}, {out, 0, GL_WRITE_ONLY},
-                                        {normal, 0, GL_WRITE_ONLY}},
+                             .images = {{picture, 0, GL_READ_WRITE}, {sum, 0, GL_READ_WRITE}},
                              .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_gpu_dispatch(gpu, &d);
-    orl_tex_read(out, 0, GL_RED, GL_FLOAT, sizeof depth, depth);
-    for (int i = 0; i < SIDE * SIDE; i++)
-        assert_float_equal(depth[i], i == 20 ? 0 : 2, 0);
+    orl_tex_read(sum, 0, GL_RGBA, GL_FLOAT, sizeof values, values);
+    for (int i = 0; i < 4 * SIDE * SIDE; i++) {
+        double expected = i % 4 < 3 ? sqrt(i) : i;
+        assert_float_equal(values[i / 4][i % 4], expected, 1e-5 * i);
+    }
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     size_t cached = orl_gpu_cached_programs(gpu);
-    orl_tex_destroy(gpu, &in);
-    orl_tex_destroy(gpu, &out);
-    orl_tex_destroy(gpu, &normal);
+    orl_tex_destroy(gpu, &picture);
+    orl_tex_destroy(gpu, &sum);
     orl_gpu_destroy(&gpu);
     return cached;
 }

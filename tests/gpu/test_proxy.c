@@ -43,9 +43,9 @@ static void read_order(const struct proxy *proxy, struct drawn *out)
         out->listed[i] = (uint32_t)colors[i][0] | (uint32_t)colors[i][1] << 8;
 }
 
-// near: of struct orl_scene
-static void draw_near(const struct point *list, size_t count, const struct orl_view *view,
-                      double near, struct drawn *out)
+// near: of struct orl_scene; front_layer: the option
+static void draw_with(const struct point *list, size_t count, const struct orl_view *view,
+                      double near, float front_layer, struct drawn *out)
 {
     struct orl_points points;
     assert_int_equal(orl_points_init(NULL, &points, count), ORL_OK);
@@ -57,7 +57,7 @@ static void draw_near(const struct point *list, size_t count, const struct orl_v
         points.radius[i] = list[i].radius;
     }
     const struct orl_scene scene = {.points = points, .near_distance = near};
-    const struct orl_render_params params = {.splat_scale = 1};
+    const struct orl_render_params params = {.splat_scale = 1, .front_layer = front_layer};
     struct proxy proxy;
     struct surface surface;
     assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, 0, &proxy), ORL_OK);
@@ -85,7 +85,7 @@ static void draw_near(const struct point *list, size_t count, const struct orl_v
 static void draw(const struct point *list, size_t count, const struct orl_view *view,
                  struct drawn *out)
 {
-    draw_near(list, count, view, 0, out);
+    draw_with(list, count, view, 0, 0, out);
 }
 
 static int at(int x, int y)
@@ -142,11 +142,11 @@ static void large_splats_near_the_viewer_are_strays(void **state)
     struct point p[] = {seen_at(5.5, 5.5, 1, 3.0 / 40), seen_at(15.5, 5.5, 1, 2.0 / 40),
                         seen_at(5.5, 25.5, 4, 4 * 3.0 / 40)};
     static struct drawn d;
-    draw_near(p, ORL_COUNT(p), &view, 2, &d);
+    draw_with(p, ORL_COUNT(p), &view, 2, 0, &d);
     assert_float_equal(d.depth[at(5, 5)], 0, 0);
     assert_float_equal(d.depth[at(15, 5)], 1, 1e-5);
     assert_float_equal(d.depth[at(5, 25)], 4, 1e-4);
-    draw_near(p, ORL_COUNT(p), &view, 0.5, &d);
+    draw_with(p, ORL_COUNT(p), &view, 0.5, 0, &d);
     assert_float_equal(d.depth[at(5, 5)], 1, 1e-5);
 }
 
@@ -280,6 +280,38 @@ static void occluded_points_are_replaced(void **state)
 
 // Pixels that nothing wins are worked out for some point all the same, here one in the plane of
 // the eye, and what comes out is thrown away.
+// A wall without one of its splats, where a splat behind it is seen, and with a gap that shows many.
+static void a_splat_seen_through_a_gap_is_covered(void **state)
+{
+    (void)state;
+    static struct point p[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int x = i % SIDE, y = i / SIDE;
+        bool behind = (x == 10 && y == 10) || (x >= 24 && x < 32 && y >= 24 && y < 32);
+        p[i] = seen_at(x + 0.5, y + 0.5, behind ? 8 : 4, behind ? 0.2 : 0.08);
+    }
+    struct orl_view view = front_view();
+    static struct drawn kept, covered;
+    draw_with(p, ORL_COUNT(p), &view, 0, 0, &kept);
+    draw_with(p, ORL_COUNT(p), &view, 0, 0.01f, &covered);
+    assert_float_equal(kept.depth[at(10, 10)], 8, 1e-3);
+    assert_float_equal(covered.depth[at(10, 10)], 4, 1e-3);
+    for (int y = 26; y < 30; y++)
+        for (int x = 26; x < 30; x++)
+            assert_float_equal(covered.depth[at(x, y)], 8, 1e-3);
+}
+
+// Nothing is there that could cover it.
+static void a_splat_alone_stays(void **state)
+{
+    (void)state;
+    struct point p = seen_at(12.5, 30.5, 2, 0.001);
+    struct orl_view view = front_view();
+    static struct drawn d;
+    draw_with(&p, 1, &view, 0, 0.01f, &d);
+    assert_float_equal(d.depth[at(12, 30)], 2, 1e-5);
+}
+
 static void points_beside_the_eye_leave_no_mark(void **state)
 {
     (void)state;
@@ -340,6 +372,8 @@ int main(void)
         cmocka_unit_test(holes_between_splats_are_pushed_shut),
         cmocka_unit_test(depths_between_splats_are_interpolated),
         cmocka_unit_test(occluded_points_are_replaced),
+        cmocka_unit_test(a_splat_seen_through_a_gap_is_covered),
+        cmocka_unit_test(a_splat_alone_stays),
         cmocka_unit_test(points_beside_the_eye_leave_no_mark),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
     };

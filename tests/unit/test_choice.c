@@ -95,7 +95,6 @@ static void papers_on_one_proxy(void **state)
         const struct orl_render_params *own = &c->method->params;
         bool needs_normal = strcmp(own->weight, "normal") == 0 || strcmp(own->weight, "princ") == 0;
         assert_ptr_equal(c->params.proxy, oriel->proxy);
-        assert_float_equal(c->params.min_support, oriel->min_support, 0);
         assert_float_equal(c->params.front_layer, oriel->front_layer, 0);
         assert_int_equal(c->params.fill, needs_normal ? own->fill : oriel->fill);
         assert_string_equal(c->params.weight, own->weight);

@@ -152,14 +152,14 @@ static void scenes_settings_are_used(void **state)
 {
     (void)state;
     const struct orl_method *method = &orl_methods[0];
-    struct orl_tuned tuned[] = {{(char *)"other", (char *)"min_support", 3, NULL},
-                                {(char *)method->name, (char *)"min_support", 5, NULL},
+    struct orl_tuned tuned[] = {{(char *)"other", (char *)"outliers", 0.25, NULL},
+                                {(char *)method->name, (char *)"outliers", 0.5, NULL},
                                 {(char *)method->name, (char *)"front_layer", 0.05, NULL}};
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
                               .tuned_count = 3};
     struct orl_render_params params;
     orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_float_equal(params.min_support, 5, 0);
+    assert_float_equal(params.outliers, 0.5, 0);
     assert_float_equal(params.front_layer, 0.05, 1e-6);
     assert_float_equal(params.splat_scale, method->params.splat_scale, 0);
     tuned[0] = (struct orl_tuned){(char *)method->name, (char *)"antialias", 0, (char *)"off"};
@@ -170,7 +170,7 @@ static void scenes_settings_are_used(void **state)
 
 static void count_warnings(void *count, enum orl_log_level level, const char *message)
 {
-    *(int *)count += level == ORL_LOG_WARNING && strstr(message, "of_tomorrow=1 min_support=1000000 weight=heavy");
+    *(int *)count += level == ORL_LOG_WARNING && strstr(message, "of_tomorrow=1 outliers=1000000 weight=heavy");
 }
 
 // A scene that another version tuned opens: what this one does not take is named once, and the rest holds.
@@ -180,7 +180,7 @@ static void settings_that_do_not_fit_are_ignored(void **state)
     const struct orl_method *method = &orl_methods[0];
     char *name = (char *)method->name;
     struct orl_tuned tuned[] = {{name, (char *)"of_tomorrow", 1, NULL},
-                                {name, (char *)"min_support", 1e6, NULL},
+                                {name, (char *)"outliers", 1e6, NULL},
                                 {name, (char *)"weight", 0, (char *)"heavy"},
                                 {name, (char *)"splat_scale", 2, NULL}};
     struct orl_scene scene = {.dir = (char *)"a scene", .points = {.count = 1}, .tuned = tuned,
@@ -191,7 +191,7 @@ static void settings_that_do_not_fit_are_ignored(void **state)
     orl_render_params_tuned(&log, method, &scene, &params);
     assert_int_equal(warnings, 1);
     assert_float_equal(params.splat_scale, 2, 0);
-    assert_float_equal(params.min_support, method->params.min_support, 0);
+    assert_float_equal(params.outliers, method->params.outliers, 0);
     assert_string_equal(params.weight, method->params.weight);
 }
 

@@ -29,7 +29,7 @@ function makePrograms(device, sources, manifest, planes)
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
         pullFinest: screen("pull.frag", {FINEST: 1}), pull: screen("pull.frag"),
         push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
-        support: screen("support.frag"), seedDepth: screen("fill_seed_depth.frag"),
+        seedDepth: screen("fill_seed_depth.frag"),
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"), fillDepth: screen("fill_depth.frag"),
         depthUnpack: screen("depth_unpack.frag"),
         choose: screen("choose.frag", asks), gather: screen("gather.frag", asks),
@@ -71,7 +71,6 @@ class Frame {
         this.pulled = [null, ...surfels.pulled];
         this.pushed = [null, ...surfels.pushed];
         this.surface = this.make(width, height, ["R32F", "RGBA8"]);
-        this.supported = this.make(width, height, ["R32F", "RGBA8"]);
         this.depth = this.make(width, height, ["R32F"]);
         this.fillDepth = this.pyramid(["RGBA32F"]); // floats: sums of a whole picture exceed what half floats hold
         this.fillColor = this.pyramid(["RGBA32F"]);
@@ -174,17 +173,17 @@ export class Renderer {
         this.camera = camera;
         this.values = {footprint: Math.max(this.focal / camera.fx, 1), // as orl_frame_footprint
                        view_focal: [camera.fx, camera.fy, camera.cx, camera.cy],
-                       front_layer: Math.max(o.front_layer, 1e-9), typical: this.manifest.distance,
+                       front_layer: o.front_layer, typical: this.manifest.distance,
                        near: this.manifest.near || 0,
                        min_inverse: 1 / (this.shared.ORL_GUESS_FARTHEST * this.manifest.distance),
                        ground: this.groundAlongRays(camera)};
         this.splat(camera, o);
         this.pullPush();
         const pointsOnly = layer === POINTS_LAYER || this.photos.ready.length === 0;
-        this.fillIn(f.fillDepth, this.programs.seedDepth, {...this.values, known: this.supported, normals: this.normals},
+        this.fillIn(f.fillDepth, this.programs.seedDepth, {...this.values, known: f.surface.textures[0], normals: f.surface.textures[1]},
                     f.fillDepth.pulled[0], true);
         this.device.pass(this.programs.fillDepth, f.depth,
-                         {...this.values, known: this.supported, far: true,
+                         {...this.values, known: f.surface.textures[0], far: true,
                           filled: f.fillDepth.pushed[0].textures[0]});
         this.depth = f.depth;
         const photos = pointsOnly ? [] : this.gather(camera, o, whole);
@@ -266,14 +265,6 @@ export class Renderer {
             above = f.pushed[i];
         }
         device.pass(programs.pushLast, f.surface, {...level0, ...coarse(above)});
-        this.supported = f.surface.textures[0];
-        this.normals = f.surface.textures[1];
-        const support = Math.floor(this.manifest.options.min_support);
-        if (support > 0) {
-            device.pass(programs.support, f.supported, {depth_in: this.supported, normal_in: this.normals,
-                                                        min_support: support});
-            [this.supported, this.normals] = f.supported.textures;
-        }
     }
 
     // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.
@@ -335,7 +326,7 @@ export class Renderer {
     {
         const f = this.frame;
         const colors = {painted: f.painted.textures[0], splat_color: f.level0.textures[2],
-                        normals: this.normals, points_only: pointsOnly,
+                        normals: f.surface.textures[1], points_only: pointsOnly,
                         loading: this.photos.ready.length < this.photos.slots};
         this.fillIn(f.fillColor, this.programs.seedColor, colors, f.seeds, false);
         this.device.makeLevels(f.guesses);
@@ -377,7 +368,7 @@ export class Renderer {
         const f = this.frame;
         this.device.pass(program, place,
                          {corner: [place?.x || 0, place?.y || 0], composed: this.finished,
-                          depth: this.depth.textures[0], normals: this.normals, source: f.painted.textures[1],
+                          depth: this.depth.textures[0], normals: f.surface.textures[1], source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
                           exposure: this.exposure, tone: this.tone,
                           footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance && !this.corrected});

@@ -30,7 +30,7 @@ void main()
     bool drawn = p.z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < size.x && at.y < size.y;
 #ifdef LAYER
     float front = drawn ? texelFetch(nearest, ivec2(at), 0).x : 0.0;
-    behind = (p.z - front) / (front * front_layer);
+    behind = (p.z - front) / (front * max(front_layer, 1e-9));
     drawn = drawn && behind < 1.0;
 #else
     vec3 n = rotation * octahedron_decode(octahedral);

@@ -47,7 +47,7 @@ void main()
     surfel own = level0(at);
     float own_depth = surfel_own_depth(own, camera_ray(target + own.displacement),
                                        camera_ray(target));
-    surfel s = filled(target, own_depth, disc, centre, ray, weight);
+    surfel s = filled(target, supported(own_depth, disc), disc, centre, ray, weight);
     bool kept = s.radius == 0.0, inside;
     vec3 n = kept ? own.normal : normalize(s.normal);
     s.normal = n;

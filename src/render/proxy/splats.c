@@ -40,10 +40,10 @@ static int pyramid_levels(int width, int height)
 static size_t target_bytes(const void *state, int width, int height)
 {
     const struct cloud *cloud = state;
-    // Bytes per pixel: three words of splats, 8 bytes of level 0, two depths, a normal, and 24
+    // Bytes per pixel: three words of splats, 8 bytes of level 0, depth, a normal, and 24
     // bytes of the coarser levels; four more words if there are several chunks.
     size_t chunks = cloud->chunk_count < 2 ? 0 : 16;
-    return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3 + chunks);
+    return (size_t)width * (size_t)height * (12 + 8 + 4 + 8 + 24 / 3 + chunks);
 }
 
 // Each level is half as large as the one before, rounded up. Loads outside read as empty.
@@ -71,7 +71,7 @@ static void finish_target(struct orl_gpu *gpu, void *memory)
     }
     struct orl_tex **const textures[] = {
         &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
-        &target->chunk_splats, &target->pushed_depth, &target->surface.depth, &target->surface.normal,
+        &target->chunk_splats, &target->surface.depth, &target->surface.normal,
     };
     for (size_t i = 0; i < ORL_COUNT(textures); i++)
         orl_tex_destroy(gpu, textures[i]);
@@ -88,7 +88,6 @@ static enum orl_result make_target(struct orl_gpu *gpu, const void *state, void 
         {"splat index", GL_R32UI, &target->splat_index},
         {"splat layer", GL_R32UI, &target->splat_layer},
         {"splats", GL_RG32UI, &target->splats},
-        {"pushed depth", GL_R32F, &target->pushed_depth},
         {"proxy depth", GL_R32F, &target->surface.depth},
         {"proxy normal", GL_RGBA16F, &target->surface.normal},
         {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
@@ -141,9 +140,9 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
         }
 }
 
-// Makes levels 0 and 1. Level 0 goes into `depth` without normals, else into the target's splats.
+// Makes levels 0 and 1. Level 0 goes into the depth without normals, else into the target's splats.
 static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block,
-                    const struct orl_tex *depth, bool normals, struct splat_target *t)
+                    bool normals, struct splat_target *t)
 {
     bool chunks = cloud->chunk_count > 1;
     struct orl_prog *prog = orl_prog_get(gpu, "proxy/splat_resolve.comp", NULL,
@@ -158,7 +157,7 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
                                  .images = {{chunk->point_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},
                                             {t->splat_layer, 0, GL_READ_ONLY},
-                                            {normals ? t->splats : depth, 0, GL_WRITE_ONLY},
+                                            {normals ? t->splats : t->surface.depth, 0, GL_WRITE_ONLY},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
                                             {t->surfel_b[1], 0, GL_WRITE_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
@@ -192,10 +191,10 @@ static void pull(struct orl_gpu *gpu, struct pyramid_block *block,
     orl_gpu_dispatch(gpu, &d);
 }
 
-// Pushes into `level` from the coarser one. Level 0 is written as `depth`, and as the normal if it
-// is asked for.
+// Pushes into `level` from the coarser one. Level 0 is written as depth, and as the normal if it is
+// asked for.
 static void push(struct orl_gpu *gpu, struct pyramid_block *block,
-                 struct splat_target *t, int level, const struct orl_tex *depth, bool normals)
+                 struct splat_target *t, int level, bool normals)
 {
     const struct orl_tex *coarse = t->surfel_a[level + 1];
     const char *defines = level ? NULL : normals ? "LAST\nNORMALS" : "LAST";
@@ -210,7 +209,7 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
         d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY};
     } else {
         d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
-        d.images[3] = (struct orl_image_binding){depth, 0, GL_READ_WRITE};
+        d.images[3] = (struct orl_image_binding){t->surface.depth, 0, GL_READ_WRITE};
         d.images[4] = (struct orl_image_binding){t->surface.normal, 0, GL_WRITE_ONLY};
     }
     set_level(block, level ? t->surfel_a[level] : t->splats, level);
@@ -219,33 +218,15 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
     orl_gpu_dispatch(gpu, &d);
 }
 
-static void drop_outliers(struct orl_gpu *gpu, struct pyramid_block *block, int least,
-                        struct splat_target *t)
+static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, float front_layer, bool normals,
+                      struct splat_target *t)
 {
-    set_level(block, t->surface.depth, 0);
-    block->min_support = least;
-    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/support.comp", NULL, NULL),
-                             .params = block, .params_size = sizeof *block,
-                             .images = {{t->pushed_depth, 0, GL_READ_ONLY},
-                                        {t->surface.depth, 0, GL_WRITE_ONLY},
-                                        {t->surface.normal, 0, GL_WRITE_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups((t->surface.width + 1) / 2, (t->surface.height + 1) / 2, d.groups);
-    orl_gpu_dispatch(gpu, &d);
-}
-
-static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, int min_support,
-                      const struct orl_tex *depth, bool normals, struct splat_target *t)
-{
-    struct pyramid_block block = {0};
+    struct pyramid_block block = {.front_layer = front_layer};
     orl_set_focal(&view->camera, block.camera);
     for (int i = 2; i < t->levels; i++)
         pull(gpu, &block, t, i);
     for (int i = t->levels - 2; i >= 0; i--)
-        push(gpu, &block, t, i, depth, normals);
-    if (min_support > 0)
-        drop_outliers(gpu, &block, min_support, t);
+        push(gpu, &block, t, i, normals);
 }
 
 static enum orl_result bring(const void *state, const struct orl_view *view)
@@ -259,14 +240,12 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
 {
     struct splat_target *t = target;
     struct splat_block block = splat_params(state, view, params);
-    int min_support = (int)params->min_support;
-    const struct orl_tex *depth = min_support > 0 ? t->pushed_depth : t->surface.depth;
     orl_pass_begin(gpu, "splat");
     splat(gpu, state, &block, t);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
-    resolve(gpu, state, &block, depth, normals, t);
-    pull_push(gpu, view, min_support, depth, normals, t);
+    resolve(gpu, state, &block, normals, t);
+    pull_push(gpu, view, params->front_layer, normals, t);
     orl_pass_end(gpu);
 }
 

@@ -19,7 +19,6 @@ struct splat_target {
     struct orl_tex *chunk_splats; // RGBA32UI: surfels of level 0; NULL: points are one chunk
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // levels from 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
-    struct orl_tex *pushed_depth; // depth before isolated outliers are dropped
 };
 
 #endif
