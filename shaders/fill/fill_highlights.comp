@@ -5,11 +5,14 @@
 
 layout(rgba32f, binding = 1) uniform image2D accumulated; // blended pixels of shared/pixel.glsl
 
+bool fill_wants(ivec2 at)
+{
+    return pixel_at_least(imageLoad(accumulated, at));
+}
+
 void fill_pixel(ivec2 at, vec4 value)
 {
     vec4 sum = imageLoad(accumulated, at);
-    if (!pixel_at_least(sum) || !(value.a > 0.0))
-        return;
     float weight = pixel_weight(sum);
     vec3 light = exp2(value.rgb / value.a);
     imageStore(accumulated, at, pixel_blended(max(sum.rgb, light * weight), weight, false));

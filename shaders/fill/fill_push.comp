@@ -3,8 +3,12 @@
 
 layout(rgba32f, binding = 1) uniform image2D fine;
 
+bool fill_wants(ivec2 at)
+{
+    return !(imageLoad(fine, at).a > 0.0);
+}
+
 void fill_pixel(ivec2 at, vec4 value)
 {
-    if (value.a > 0.0 && !(imageLoad(fine, at).a > 0.0))
-        imageStore(fine, at, value);
+    imageStore(fine, at, value);
 }

@@ -32,7 +32,8 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return orl_tex_fit(gpu, &params, &fill->guesses);
 }
 
-// One program from texture to texture, each invocation for n x n pixels of `to`. beside: read besides, may be NULL.
+// One program from texture to texture, each invocation for n x n pixels of `to`, or of ORL_FILL_RUN places side by side
+// if n is 2. beside: read besides, may be NULL.
 static void run(const struct frame *frame, const char *file, const char *defines, int n, const struct orl_tex *from,
                 const struct orl_tex *beside, const struct orl_tex *to)
 {
@@ -46,6 +47,8 @@ static void run(const struct frame *frame, const char *file, const char *defines
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
     orl_pixel_groups((width + n - 1) / n, (height + n - 1) / n, d.groups);
+    if (n == 2)
+        d.groups[0] = orl_groups(d.groups[0], ORL_FILL_RUN);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
