@@ -10,7 +10,7 @@ layout(rgba32f, binding = 0) readonly uniform image2D filled;
 #include "fill/fill.glsl"
 
 bool fill_wants(ivec2 at); // whether the pixel has no value of its own
-void fill_pixel(ivec2 at, vec4 value); // gives it one
+void fill_pixel(ivec2 at, vec4 value); // gives it one; value.a: 0: nothing is known
 
 ivec2 fill_parent(int k)
 {
@@ -33,7 +33,7 @@ void main()
         fill_finer(parent, finer);
         for (int k = 0; k < 4; k++) { // outside, loads give 0 and stores do nothing
             ivec2 at = 2 * parent + ivec2(k & 1, k >> 1);
-            if (finer[k].a > 0.0 && fill_wants(at)) // a is 0 where nothing at all is known
+            if (fill_wants(at))
                 fill_pixel(at, finer[k]);
         }
         left &= left - 1u;

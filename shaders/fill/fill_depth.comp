@@ -15,5 +15,6 @@ bool fill_wants(ivec2 at)
 void fill_pixel(ivec2 at, vec4 value)
 {
     vec3 ray = vec3((vec2(at) + 0.5 - focal.zw) / focal.xy, 1.0);
-    imageStore(depth, at, vec4(slope_guess(value, 1.0 / (ORL_GUESS_FARTHEST * depth_scale), ground, ray)));
+    if (value.a > 0.0)
+        imageStore(depth, at, vec4(slope_guess(value, 1.0 / (ORL_GUESS_FARTHEST * depth_scale), ground, ray)));
 }

@@ -15,5 +15,6 @@ void fill_pixel(ivec2 at, vec4 value)
     vec4 sum = imageLoad(accumulated, at);
     float weight = pixel_weight(sum);
     vec3 light = exp2(value.rgb / value.a);
-    imageStore(accumulated, at, pixel_blended(max(sum.rgb, light * weight), weight, false));
+    if (value.a > 0.0)
+        imageStore(accumulated, at, pixel_blended(max(sum.rgb, light * weight), weight, false));
 }

@@ -10,5 +10,6 @@ bool fill_wants(ivec2 at)
 
 void fill_pixel(ivec2 at, vec4 value)
 {
-    imageStore(room, at, vec4(value.rgb / value.a, 1.0));
+    if (value.a > 0.0)
+        imageStore(room, at, vec4(value.rgb / value.a, 1.0));
 }

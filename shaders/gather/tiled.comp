@@ -18,7 +18,6 @@ layout(rgba32f, binding = 3) writeonly uniform image2D guesses; // the same, of 
 layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
-#include "gather/unfinished.glsl"
 
 float surface_share(photo source, spot s, vec4 seen, float z)
 {
@@ -93,12 +92,10 @@ void main()
         guess += guessed;
         blur = guessed.a > 0.0 ? max(blur, own) : blur;
     }
-    bool whole = true;
     for (int k = 0; k < 4; k++) {
         bool has_color = colors[k].a > 0.0;
         bool blurs = has_color && is_guess(spots[k]) && blur > 0.0;
         lumas[k] = has_color ? lumas[k] : -1.0;
-        whole = whole && has_color && !blurs;
         colors[k] = !has_color ? pixel_unpainted()
                     : blurs    ? pixel_to_blur(colors[k].rgb, blur)
                                : pixel_finished(colors[k].rgb, !is_guess(spots[k]));
@@ -118,6 +115,4 @@ void main()
     imageStore(seeds, corner / 2, seed);
     if (guess.a > 0.0) // the host has cleared the image, which costs less than stores
         imageStore(guesses, corner / 2, guess);
-    if (!whole)
-        unfinished_groups[gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x] = 1u;
 }

@@ -139,8 +139,7 @@ ORL_BLOCK(depth_map_block)
 
 // Image-space hole filling and the final composition.
 #if defined(__STDC_VERSION__) || defined(BLOCK_IMAGE)
-#define ORL_FILL_RUN 8    // groups of pixels that one work group of hole filling looks at, at most 32
-#define ORL_COMPOSE_RUN 8 // work groups of the gather that one of the composition finishes, at most 32
+#define ORL_FILL_RUN 8 // groups of pixels that one work group of hole filling looks at, at most 32
 
 ORL_BLOCK(image_block)
 {

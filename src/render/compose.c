@@ -21,7 +21,6 @@ static bool antialiases(const struct frame *frame)
 
 static void compose(const struct frame *frame)
 {
-    struct orl_buf *unfinished = frame->finishes ? frame->paint->gather.unfinished : NULL;
     const char *defines = frame->finishes ? "FINISHED" : frame->radiance ? "RADIANCE" : NULL;
     struct image_block block = {
         .image_size = {frame->surface.width, frame->surface.height},
@@ -31,18 +30,14 @@ static void compose(const struct frame *frame)
     };
     struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
                              .params = &block, .params_size = sizeof block,
-                             .bufs = {[2] = unfinished},
                              .textures = {frame->paint->fill.guesses},
-                             .images = {{frame->picture, 0, GL_READ_WRITE},
-                                        {frame->paint->fill.level[0], 0, GL_READ_ONLY},
+                             .images = {{frame->paint->fill.level[0], 0, GL_READ_ONLY},
+                                        {frame->picture, 0, GL_READ_WRITE},
                                         {frame->surface.depth, 0, GL_READ_ONLY},
                                         {frame->paint->trusted, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
-    // One invocation handles 2x2 pixels.
-    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
-    if (frame->finishes)
-        d.groups[0] = orl_groups(d.groups[0], ORL_COMPOSE_RUN);
+    orl_fill_groups(frame->surface.width, frame->surface.height, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 

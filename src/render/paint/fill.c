@@ -32,9 +32,15 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return orl_tex_fit(gpu, &params, &fill->guesses);
 }
 
-// One program from texture to texture, each invocation for n x n pixels of `to`, or of ORL_FILL_RUN places side by side
-// if n is 2. beside: read besides, may be NULL.
-static void run(const struct frame *frame, const char *file, const char *defines, int n, const struct orl_tex *from,
+void orl_fill_groups(int width, int height, unsigned groups[3])
+{
+    orl_pixel_groups((width + 1) / 2, (height + 1) / 2, groups);
+    groups[0] = orl_groups(groups[0], ORL_FILL_RUN);
+}
+
+// One program from texture to texture. applies: it is of shaders/fill/apply.glsl, else an invocation is for a pixel
+// of `to`. beside: read besides, may be NULL.
+static void run(const struct frame *frame, const char *file, const char *defines, bool applies, const struct orl_tex *from,
                 const struct orl_tex *beside, const struct orl_tex *to)
 {
     int width = to->params.width, height = to->params.height;
@@ -46,15 +52,16 @@ static void run(const struct frame *frame, const char *file, const char *defines
                              .images = {{from, 0, GL_READ_ONLY}, {to, 0, GL_READ_WRITE}, {beside, 0, GL_READ_ONLY}},
                              .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                                         GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups((width + n - 1) / n, (height + n - 1) / n, d.groups);
-    if (n == 2)
-        d.groups[0] = orl_groups(d.groups[0], ORL_FILL_RUN);
+    if (applies)
+        orl_fill_groups(width, height, d.groups);
+    else
+        orl_pixel_groups(width, height, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 
 static void seed(const struct frame *frame, const char *what, const struct orl_tex *from, const struct orl_tex *beside)
 {
-    run(frame, "fill/fill_seed.comp", what, 1, from, beside, frame->paint->fill.level[0]);
+    run(frame, "fill/fill_seed.comp", what, false, from, beside, frame->paint->fill.level[0]);
 }
 
 // Spreads the known values of level 0 over all of it (pull-push, Gortler 1996). how: "FAR" (fill.glsl),
@@ -63,15 +70,15 @@ static void spread(const struct frame *frame, const char *how)
 {
     struct orl_tex *const *level = frame->paint->fill.level;
     for (int i = 1; i < frame->paint->fill.levels; i++)
-        run(frame, "fill/fill_pull.comp", how, 1, level[i - 1], NULL, level[i]);
+        run(frame, "fill/fill_pull.comp", how, false, level[i - 1], NULL, level[i]);
     for (int i = frame->paint->fill.levels - 2; i >= 0; i--)
-        run(frame, "fill/fill_push.comp", how, 2, level[i + 1], NULL, level[i]);
+        run(frame, "fill/fill_push.comp", how, true, level[i + 1], NULL, level[i]);
 }
 
 // What level 0 says of the pixels of a picture, by a program of shaders/fill/apply.glsl.
 static void apply(const struct frame *frame, const char *file, const struct orl_tex *picture)
 {
-    run(frame, file, NULL, 2, frame->paint->fill.level[0], NULL, picture);
+    run(frame, file, NULL, true, frame->paint->fill.level[0], NULL, picture);
 }
 
 void orl_fill_depth(const struct frame *frame)
@@ -121,6 +128,6 @@ void orl_fill_guesses(const struct frame *frame)
 {
     struct orl_tex *guesses = frame->paint->fill.guesses;
     if (frame->radiance)
-        run(frame, "fill/fill_seed.comp", "SEED_GUESSES", 1, frame->picture, frame->paint->trusted, guesses);
+        run(frame, "fill/fill_seed.comp", "SEED_GUESSES", false, frame->picture, frame->paint->trusted, guesses);
     orl_tex_make_mipmaps(guesses, 0);
 }

@@ -52,7 +52,6 @@ void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
     orl_tex_destroy(gpu, &gather->photo_rows);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
-    orl_buf_destroy(gpu, &gather->unfinished);
     free(gather->list);
     free(gather->options);
     memset(gather, 0, sizeof *gather);

@@ -15,7 +15,6 @@ struct gather {
     struct orl_buf *photos;     // the same on the device
     struct orl_tex *photo_rows; // view of `photos` as RGBA32F texels
     struct orl_buf *tile_lists; // listed photographs of each tile
-    struct orl_buf *unfinished; // marks of the last tiled painter: gather/unfinished.glsl
     char *options;              // owned: defines RENDER_OPTIONS (render_blocks.h)
 };
 
@@ -66,6 +65,10 @@ struct fill {
 // Makes the textures fit pictures of this size.
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height) ORL_CHECK_RESULT;
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
+
+// Work groups of a program of shaders/fill/apply.glsl for a picture of this size.
+void orl_fill_groups(int width, int height, unsigned groups[3]);
+
 // Writes the estimated background depth ("guess" in identifiers), as negative values, where the
 // surface has none. With fill=ground it is no farther than the scene's ground.
 void orl_fill_depth(const struct frame *frame);

@@ -8,18 +8,6 @@
 #include "render/photos/progressive.h"
 #include "shared/constants.h"
 
-// Makes room for the lists of photographs of each tile and for the marks of unfinished work groups.
-static enum orl_result make_lists(const struct frame *frame, size_t tiles, size_t groups)
-{
-    struct gather *g = &frame->paint->gather;
-    ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles",
-                          tiles * ORL_CANDIDATES * sizeof(int), &g->tile_lists));
-    ORL_TRY(orl_make_room(frame->gpu, "groups with unfinished pixels", groups * sizeof(uint32_t),
-                          &g->unfinished));
-    orl_buf_fill(g->unfinished, 0);
-    return ORL_OK;
-}
-
 // For the passes that ask photographs. Without a backdrop that rests they lose no time.
 static const char *rest_define(const struct frame *frame)
 {
@@ -46,7 +34,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
         d.textures[ORL_PHOTO_SOFT] = frame->photos->soft;
         d.images[4] = (struct orl_image_binding){frame->soft->gathered, 0, GL_WRITE_ONLY};
     }
-    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT;
+    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
     orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
     orl_tex_clear(frame->paint->fill.guesses);
@@ -58,9 +46,8 @@ static enum orl_result paint_chosen(const struct frame *frame)
     struct gather *g = &frame->paint->gather;
     size_t across = orl_groups((size_t)frame->surface.width, orl_tile_side(frame));
     size_t down = orl_groups((size_t)frame->surface.height, orl_tile_side(frame));
-    unsigned groups[3];
-    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, groups);
-    ORL_TRY(make_lists(frame, across * down, (size_t)groups[0] * groups[1]));
+    ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles", across * down * ORL_CANDIDATES * sizeof(int),
+                          &g->tile_lists));
     if (frame->chosen_count == 0 && !frame->progressive) {
         orl_tex_clear(frame->picture);
         if (orl_edges_find_specks(frame))
@@ -71,7 +58,7 @@ static enum orl_result paint_chosen(const struct frame *frame)
     struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
                                                      rest_define(frame)),
                              .params = &block, .params_size = sizeof block,
-                             .bufs = {[1] = g->tile_lists, g->unfinished},
+                             .bufs = {[1] = g->tile_lists},
                              .textures = {frame->photos->color, frame->photos->depth,
                                           [ORL_PHOTO_CHROMA] = frame->photos->chroma},
                              .images = {{frame->surface.depth, 0, GL_READ_ONLY},
