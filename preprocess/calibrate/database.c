@@ -287,6 +287,7 @@ enum orl_result orl_database_detach(struct orl_database *db)
 // Photographs of one camera each have a rig a camera and a frame a photograph.
 static enum orl_result find_rigs(struct orl_database *db, bool *has)
 {
+    // One row is enough, and `ask` binds a number.
     return ask(db, "SELECT 1 FROM main.sqlite_master WHERE name = 'frames' LIMIT ?", 1, has);
 }
 

@@ -2,9 +2,9 @@
 // the page. The file that includes this one defines camera_ray and front_layer.
 #include "proxy/surfel.glsl"
 
-// The depth of a pixel's own splat; 0 if none of the coarse surfels around, its own pixel's among them, comes within
-// front_layer of it: it is seen through a gap of the surface before it, and is filled like an empty pixel. With
-// front_layer 0 every splat counts.
+// The depth of a pixel's own splat; 0 if it lies farther than front_layer from all coarse surfels around. One of them
+// was made from this pixel and keeps the nearest splats alone, so this splat is seen through a gap of a nearer surface,
+// and its pixel is filled like an empty one. With front_layer 0 every splat counts.
 float supported(float own_depth, surfel disc[4])
 {
     bool agrees = front_layer == 0.0;
