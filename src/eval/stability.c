@@ -214,7 +214,6 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
     if (!fits(before) || !fits(after))
         return orl_fail(log, ORL_ERR_ARGUMENT, "a frame's pictures are not of its camera's size");
     struct sums sums = {0};
-    size_t blocks = 0;
     for (int y = 0; y < after->srgb.height; y += ORL_STABILITY_BLOCK)
         for (int x = 0; x < after->srgb.width; x += ORL_STABILITY_BLOCK) {
             struct block block;
@@ -223,7 +222,7 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
                 continue;
             double change = mean_change(&block);
             step->block_mean += change;
-            blocks++;
+            step->blocks++;
             if (change > step->block_worst) {
                 step->block_worst = change;
                 step->block_x = x;
@@ -235,7 +234,7 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
     step->mean = pixels > 0 ? sums.absolute / pixels : 0;
     step->floor = pixels > 0 ? 0.5 * sums.lost / pixels : 0;
     step->p99 = percentile_99(&sums.counts);
-    step->block_mean /= blocks ? (double)blocks : 1;
+    step->block_mean /= step->blocks ? (double)step->blocks : 1;
     step->jump = mean_change(&sums.all);
     for (size_t i = 0; i < ORL_COUNT(counts->of); i++)
         counts->of[i] += sums.counts.of[i];
@@ -311,14 +310,14 @@ static enum orl_result draw(struct orl_gpu *gpu, struct orl_renderer *renderer,
 
 static void summarise(struct orl_stability *s, const struct orl_stability_counts *counts)
 {
-    double n = (double)s->step_count;
     struct orl_stability_step *all = &s->all;
     for (size_t i = 0; i < s->step_count; i++) {
         const struct orl_stability_step *step = &s->steps[i];
-        all->compared += step->compared / n;
-        all->mean += step->mean / n;
-        all->floor += step->floor / n;
-        all->block_mean += step->block_mean / n;
+        all->compared += step->compared;
+        all->mean += step->mean * step->compared;
+        all->floor += step->floor * step->compared;
+        all->blocks += step->blocks;
+        all->block_mean += step->block_mean * (double)step->blocks;
         if (step->block_worst > all->block_worst) {
             all->block_worst = step->block_worst;
             all->block_x = step->block_x;
@@ -330,6 +329,13 @@ static void summarise(struct orl_stability *s, const struct orl_stability_counts
             s->worst_jump_step = i;
         }
     }
+    if (all->compared > 0) {
+        all->mean /= all->compared;
+        all->floor /= all->compared;
+    }
+    if (all->blocks > 0)
+        all->block_mean /= (double)all->blocks;
+    all->compared /= (double)s->step_count;
     all->p99 = percentile_99(counts);
 }
 
@@ -389,10 +395,9 @@ void orl_stability_finish(struct orl_stability *stability)
 
 static json_t *step_json(const struct orl_stability_step *s)
 {
-    return json_pack("{s:f,s:f,s:f,s:f,s:f,s:f,s:[ii],s:f}", "compared", s->compared, "mean",
-                     s->mean, "p99", s->p99, "floor", s->floor, "block_mean", s->block_mean,
-                     "block_worst", s->block_worst, "block_at", s->block_x, s->block_y, "jump",
-                     s->jump);
+    return json_pack("{s:f,s:f,s:f,s:f,s:I,s:f,s:f,s:[ii],s:f}", "compared", s->compared, "mean",
+                     s->mean, "p99", s->p99, "floor", s->floor, "blocks", (json_int_t)s->blocks, "block_mean",
+                     s->block_mean, "block_worst", s->block_worst, "block_at", s->block_x, s->block_y, "jump", s->jump);
 }
 
 json_t *orl_stability_report(const struct orl_scene *scene, const struct orl_stability *s)

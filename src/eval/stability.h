@@ -21,8 +21,8 @@ struct orl_stability_step {
     // Estimate of what interpolation alone adds to `mean`: half of the second frame's difference
     // after it is moved by the same fractions of a pixel, and back.
     double floor;
-    // Differences of the mean colours of 16x16 blocks with at least half of their pixels compared.
-    // Interpolation, noise and detail cancel out; popping remains.
+    size_t blocks; // 16x16 blocks with at least half of their pixels compared
+    // Differences of their mean colours. Interpolation, noise and detail cancel out; popping remains.
     double block_mean, block_worst;
     int block_x, block_y; // upper left pixel of the worst block in the second frame
     double jump;          // difference of the mean colour of all compared pixels
@@ -34,8 +34,8 @@ struct orl_stability {
     int width, height;
     struct orl_stability_step *steps; // owned; step i leads from frame i to frame i + 1
     size_t step_count;
-    // Means over the steps. Exceptions: p99 is over all pixels of all steps; block_worst (with its
-    // place) and jump are the largest.
+    // Over the pixels and blocks of all steps. Exceptions: compared is the mean of the steps;
+    // block_worst (with its place) and jump are the largest.
     struct orl_stability_step all;
     size_t worst_block_step, worst_jump_step;
     double render_ms; // mean

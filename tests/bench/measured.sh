@@ -218,8 +218,8 @@ frames and scatters by up to 15 % beside other programs. *Completeness* takes ev
 photographs of *temple* are themselves black in 12 and 35 % of their pixels, so that a method that draws what is behind
 the temple right has less than 1, and one that fills it with other colours has 1. `oriel` and `oriel-high` alone take the
 options that `prepare` [found on training photographs](../how/pipeline.md#what-suits-the-scene). The views of a quick
-walk lie far apart: of *temple* a tenth of the pixels can be compared, and a step without a whole block of these counts
-as one without flicker, so that the column says little there. [Columns](../reference/chart.md).
+walk lie far apart: of *temple* a tenth of the pixels can be compared, so that its flicker is that of a few blocks.
+[Columns](../reference/chart.md).
 END
     command_block "$chart"
     printf '![PSNR against the time of a frame, means over the scenes](charts.svg)\n\n'

@@ -55,7 +55,7 @@ runs 0 "$oriel" eval ws --walk 3 --divide 2 --method all --json walk.json --imag
 grep -q 'walk of 3 frames of 48x32' stdout.txt || fail "no head of the walk's table"
 grep -q '^oriel ' stdout.txt || fail "no row for a method"
 [ -s walk/oriel.00002.png ] || fail "no frame of the walk"
-for field in scene method device size frames compared mean p99 floor block_mean block_worst \
+for field in scene method device size frames compared mean p99 floor blocks block_mean block_worst \
     block_at jump steps all; do
     grep -q "\"$field\"" walk.json || fail "no field $field"
 done
