@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "preprocess/calibrate/database.h"
 #include "preprocess/calibrate/features.h"
 #include "preprocess/calibrate/mapper.h"
 #include "preprocess/calibrate/match.h"
@@ -169,6 +170,11 @@ static bool enough(const struct calibration *c)
     return registered(c) >= 3 && 2 * registered(c) >= c->job->source_count;
 }
 
+static bool most(const struct calibration *c)
+{
+    return 5 * registered(c) >= 4 * c->job->source_count;
+}
+
 static bool all(const struct calibration *c)
 {
     return registered(c) == c->job->source_count;
@@ -270,7 +276,7 @@ static enum orl_result try_hard(struct calibration *c)
     ORL_THEN(result, join_more(c));
     ORL_THEN(result, match_all(c));
     // Where most are missing another pair may be the better start.
-    if (result == ORL_OK && 5 * registered(c) < 4 * c->job->source_count) {
+    if (result == ORL_OK && !most(c)) {
         say(c, "starting from narrower baselines and fewer inliers");
         result = map(c, true, NULL);
     }
@@ -333,6 +339,15 @@ static enum orl_result begin_database(struct calibration *c)
     return set_mark(c, true);
 }
 
+static enum orl_result find_parallax(const struct calibration *c, bool *parallax)
+{
+    struct orl_database *db;
+    ORL_TRY(orl_database_open(c->job->log, ORL_PATH(c->job->dir, WORK "/database.db"), &db));
+    enum orl_result result = orl_database_has_parallax(db, parallax);
+    orl_database_close(&db);
+    return result;
+}
+
 // Cameras that stood still, one or some all around, are a common mistake.
 static enum orl_result fail_to_place(const struct calibration *c)
 {
@@ -353,11 +368,27 @@ static enum orl_result fail_to_place(const struct calibration *c)
                     job->source_count, why, job->dir);
 }
 
+// Some of the photographs of a camera that turned on one spot may still be placed, somewhere.
+static enum orl_result check_parallax(const struct calibration *c)
+{
+    bool parallax = true;
+    if (!most(c))
+        ORL_TRY(find_parallax(c, &parallax));
+    return parallax ? ORL_OK
+                    : orl_fail(c->job->log, ORL_ERR_DATA,
+                               "only %zu of %zu photographs could be placed relative to each other, and all "
+                               "that have something in common look as if the camera turned on one spot, or "
+                               "show one flat thing, and tell no depth: take them from different positions, "
+                               "a step or two from one to the next (what was done is kept in %s)",
+                               registered(c), c->job->source_count, c->job->dir);
+}
+
 static enum orl_result finish(struct calibration *c)
 {
     const struct orl_job *job = c->job;
     if (registered(c) < 3)
         return fail_to_place(c);
+    ORL_TRY(check_parallax(c));
     const char *model = ORL_PATH(job->dir, WORK "/model");
     ORL_TRY(orl_dir_remove(job->log, model));
     ORL_TRY(orl_job_remove(job, NORMALISED));

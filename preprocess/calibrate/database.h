@@ -30,6 +30,9 @@ enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, 
 // True when the photograph has matches with any other that COLMAP uses.
 enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id,
                                           bool *connected) ORL_CHECK_RESULT;
+// False when a homography explains every pair that COLMAP verified: the camera turned on one spot, or
+// the subject is flat.
+enum orl_result orl_database_has_parallax(struct orl_database *db, bool *parallax) ORL_CHECK_RESULT;
 // What is written between the two is written at once, or not at all.
 enum orl_result orl_database_begin(struct orl_database *db) ORL_CHECK_RESULT;
 enum orl_result orl_database_commit(struct orl_database *db) ORL_CHECK_RESULT;

@@ -72,7 +72,7 @@ class Build:
                 words.pop(0)
             elif word not in ("-MD", "-g") and not word.startswith("-Werror"):  # may leave something unused
                 command.append(word)
-        command += ["-I", os.path.dirname(path), "-c", changed, "-o", out]
+        command += ["-iquote", os.path.dirname(path), "-c", changed, "-o", out]
         made = run(command, cwd=self.folder)
         if made.returncode:
             raise Broken("does not compile:\n" + made.stdout[-2000:])

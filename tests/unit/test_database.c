@@ -46,7 +46,7 @@ static void make_more_tables(void)
 {
     make_tables();
     run_sql("CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY, model INTEGER);"
-            "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER);"
+            "CREATE TABLE two_view_geometries (pair_id INTEGER PRIMARY KEY, rows INTEGER, config INTEGER);"
             "INSERT INTO cameras VALUES (1, 2);");
 }
 
@@ -368,7 +368,8 @@ static void few_inliers_do_not_connect(void **state)
 {
     (void)state;
     make_more_tables();
-    run_sql("INSERT INTO two_view_geometries VALUES (2147483647 * 1 + 3, 15), (2147483647 * 2 + 4, 14);");
+    run_sql("INSERT INTO two_view_geometries VALUES (2147483647 * 1 + 3, 15, 2), "
+            "(2147483647 * 2 + 4, 14, 2);");
     struct orl_database *db = open_database();
     for (uint32_t id = 1; id <= 5; id++) {
         bool connected;
@@ -376,6 +377,27 @@ static void few_inliers_do_not_connect(void **state)
         assert_int_equal(connected, id == 1 || id == 3);
     }
     orl_database_close(&db);
+}
+
+static bool has_parallax(void)
+{
+    bool parallax;
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_database_has_parallax(db, &parallax), ORL_OK);
+    orl_database_close(&db);
+    return parallax;
+}
+
+static void homographies_have_no_parallax(void **state)
+{
+    (void)state;
+    make_more_tables();
+    assert_false(has_parallax());
+    run_sql("INSERT INTO two_view_geometries VALUES (1, 99, 4), (2, 99, 5), (3, 99, 6), (4, 99, 7), (5, 0, 0), "
+            "(6, 14, 2);");
+    assert_false(has_parallax());
+    run_sql("INSERT INTO two_view_geometries VALUES (7, 15, 3);");
+    assert_true(has_parallax());
 }
 
 static void parts_are_joined(void **state)
@@ -517,7 +539,7 @@ int main(void)
         FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
-        FILE_TEST(few_inliers_do_not_connect), FILE_TEST(parts_are_joined),
+        FILE_TEST(few_inliers_do_not_connect), FILE_TEST(homographies_have_no_parallax), FILE_TEST(parts_are_joined),
         FILE_TEST(parts_with_rigs_are_joined),
         FILE_TEST(a_part_has_the_features_of_its_pairs),
         FILE_TEST(a_part_runs_no_sql_of_a_stranger),
