@@ -148,7 +148,8 @@ static enum orl_result take_points(const struct import_job *import, const struct
     orl_names_finish(&written);
     if (result == ORL_OK && model.point_count < 3)
         result = orl_fail(import->log, ORL_ERR_DATA, "the photographs have only %zu points in "
-                          "common: are the cameras those of these photographs?",
+                          "common: are the cameras those of these photographs? Where they stand too far apart for points, "
+                          "--mesh hull makes a surface of silhouettes",
                           model.point_count);
     ORL_THEN(result, orl_import_write_model(import, "sparse", false, &(struct import_points){&model, true}));
     orl_colmap_finish(&model);
