@@ -5,7 +5,7 @@ command -v sqlite3 >/dev/null || { echo "sqlite3 is not installed"; exit 77; }
 export ORIEL_COLMAP=$source/tests/e2e/colmap_double
 export DOUBLE_TRACE=$work/trace DOUBLE_PAIRS=$work/pairs
 
-# database FILE NAMES...: COLMAP's, whose photographs have no features.
+# database FILE NAMES...: COLMAP's, whose photographs have no features, but a pair with parallax.
 database() {
     local file=$1
     shift
@@ -14,6 +14,8 @@ database() {
         for table in keypoints descriptors; do
             echo "CREATE TABLE $table (image_id INTEGER, rows INTEGER, cols INTEGER, data BLOB);"
         done
+        echo "CREATE TABLE two_view_geometries (pair_id INTEGER, rows INTEGER, config INTEGER);"
+        echo "INSERT INTO two_view_geometries VALUES (2147483649, 40, 2);"
         for name in "$@"; do
             echo "INSERT INTO images (name, camera_id) VALUES ('$name', 1);"
         done
