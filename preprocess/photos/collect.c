@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "preprocess/job/test_block.h"
+#include "preprocess/job/threads.h"
 #include "preprocess/photos/develop.h"
 #include "preprocess/photos/doubts.h"
 #include "preprocess/photos/list.h"
@@ -159,21 +160,36 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
     return good;
 }
 
+struct inspection {
+    const struct orl_job *job;
+    struct reason *reasons; // of each photograph; "": it can be used
+};
+
+static enum orl_result inspect_one(void *priv, size_t item)
+{
+    const struct inspection *all = priv;
+    struct reason reason = {"cannot be read"};
+    if (!inspect(all->job, &all->job->sources[item], &reason))
+        all->reasons[item] = reason;
+    return ORL_OK;
+}
+
 static enum orl_result inspect_all(struct orl_job *job)
 {
     size_t gain_maps = 0;
-    for (size_t i = 0; i < job->source_count; i++) {
-        struct orl_source *source = &job->sources[i];
-        if (orl_progress_cancelled(job->progress))
-            return ORL_ERR_CANCELLED;
-        orl_progress_report(job->progress, "collect", (double)i, (double)job->source_count,
-                            source->name);
-        struct reason reason = {"cannot be read"};
-        if (inspect(job, source, &reason))
-            gain_maps += source->gain_map;
+    struct inspection all = {job, orl_array(job->log, job->source_count, sizeof *all.reasons)};
+    ORL_TRY_MEMORY(all.reasons);
+    enum orl_result result = orl_threads_each(&(struct orl_each){
+        .work = inspect_one, .priv = &all, .count = job->source_count, .progress = job->progress,
+        .step = "collect", .share = 1, .total = 1});
+    for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
+        if (all.reasons[i].text[0])
+            skip_for(job, &job->sources[i], &all.reasons[i]);
         else
-            skip_for(job, source, &reason);
+            gain_maps += job->sources[i].gain_map;
     }
+    free(all.reasons);
+    ORL_TRY(result);
     orl_photos_close_up(job);
     if (gain_maps)
         orl_logf(job->log, ORL_LOG_INFO, ORL_GAIN_MAP_NEWS, gain_maps, job->source_count);

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/order.h"
+#include "preprocess/job/threads.h"
 
 enum { COPY_QUALITY = 98 };
 
@@ -98,26 +99,40 @@ static bool needs_copy(const struct orl_source *source)
     return orl_develop_wanted(source->given) || source->deep || source->profiled;
 }
 
+static enum orl_result encode(const struct orl_job *job, const struct orl_source *source, double ev,
+                              struct orl_image *copy)
+{
+    struct orl_image linear = {0};
+    enum orl_result result = orl_develop_read(job, source, &linear);
+    const float factor = (float)exp2(ev);
+    ORL_THEN(result, orl_image_init(job->log, copy, linear.width, linear.height, 3, ORL_PIXEL_U8));
+    size_t count = result == ORL_OK ? orl_image_bytes(copy) : 0;
+    for (size_t i = 0; i < count; i++)
+        copy->u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
+    orl_image_finish(&linear);
+    return result;
+}
+
 enum orl_result orl_develop_write(const struct orl_job *job, const struct orl_source *source, double ev,
                                   const char *path)
 {
-    struct orl_image linear = {0}, copy = {0};
-    enum orl_result result = orl_develop_read(job, source, &linear);
-    const float factor = (float)exp2(ev);
-    ORL_THEN(result, orl_image_init(job->log, &copy, linear.width, linear.height, 3, ORL_PIXEL_U8));
-    size_t count = result == ORL_OK ? orl_image_bytes(&copy) : 0;
-    for (size_t i = 0; i < count; i++)
-        copy.u8[i] = (uint8_t)lrintf(255 * orl_srgb_encode(factor * linear.f32[i]));
+    struct orl_image copy = {0};
+    // Reading a photograph of 8 bits as such takes a tenth of the time of going by light.
+    enum orl_result result = ev == 0 && !source->unbounded ? orl_picture_read(job->log, source->path, 3, &copy)
+                                                           : encode(job, source, ev, &copy);
     ORL_THEN(result, orl_picture_is_png(source->name)
                          ? orl_png_write(job->log, path, &copy)
                          : orl_jpeg_write(job->log, path, &copy, COPY_QUALITY, &source->exif));
-    orl_image_finish(&linear);
     orl_image_finish(&copy);
     return result;
 }
 
-static enum orl_result develop(const struct orl_job *job, struct orl_source *source)
+static enum orl_result develop(void *priv, size_t item)
 {
+    const struct orl_job *job = priv;
+    struct orl_source *source = &job->sources[item];
+    if (!needs_copy(source))
+        return ORL_OK;
     char end[64];
     snprintf(end, sizeof end, "%s", orl_picture_is_png(source->name) ? ".png" : ".jpg");
     if (source->unbounded)
@@ -134,23 +149,15 @@ static enum orl_result develop(const struct orl_job *job, struct orl_source *sou
 
 enum orl_result orl_develop(struct orl_job *job)
 {
-    size_t count = 0, done = 0;
+    size_t count = 0;
     for (size_t i = 0; i < job->source_count; i++)
         count += needs_copy(&job->sources[i]);
     if (!count)
         return ORL_OK;
     ORL_TRY(orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/developed")));
     ORL_TRY(choose_scale(job));
-    for (size_t i = 0; i < job->source_count; i++) {
-        struct orl_source *source = &job->sources[i];
-        if (!needs_copy(source))
-            continue;
-        if (orl_progress_cancelled(job->progress))
-            return ORL_ERR_CANCELLED;
-        orl_progress_report(job->progress, "develop", (double)done++, (double)count,
-                            source->given);
-        ORL_TRY(develop(job, source));
-    }
+    ORL_TRY(orl_threads_each(&(struct orl_each){.work = develop, .priv = job, .count = job->source_count,
+                                                .progress = job->progress, .step = "develop", .share = 1, .total = 1}));
     orl_progress_report(job->progress, "develop", 1, 1, NULL);
     return ORL_OK;
 }

@@ -5,7 +5,6 @@
 
 #include <libheif/heif.h>
 
-#include "core/color.h"
 #include "core/memory.h"
 #include "io/internal.h"
 
@@ -146,67 +145,58 @@ static enum orl_result check_curve(const struct heif_file *file)
                : ORL_OK;
 }
 
-// Where there is no ICC profile, samples are taken as sRGB.
-static enum orl_result make_profile(const struct heif_file *file, struct orl_profile **profile)
+void orl_heif_profile(const struct orl_log *log, const char *path, int *bits, struct orl_profile **profile)
 {
-    size_t size = heif_image_handle_get_raw_color_profile_size(file->picture);
-    *profile = NULL;
-    if (!size)
-        return ORL_OK;
-    void *icc = orl_array(file->log, size, 1);
-    ORL_TRY_MEMORY(icc);
-    enum orl_result result =
-        check(file, heif_image_handle_get_raw_color_profile(file->picture, icc));
-    if (result == ORL_OK)
-        *profile = orl_profile_create(file->log, file->path, icc, size);
+    struct heif_file file;
+    bool open = open_heif(NULL, path, &file) == ORL_OK;
+    size_t size = open ? heif_image_handle_get_raw_color_profile_size(file.picture) : 0;
+    void *icc = size ? orl_array(log, size, 1) : NULL;
+    *bits = open ? file.bits : 0;
+    *profile = icc && heif_image_handle_get_raw_color_profile(file.picture, icc).code == heif_error_Ok
+                   ? orl_profile_create(log, path, icc, size)
+                   : NULL;
     free(icc);
-    return result;
+    close_heif(&file);
 }
 
-// Samples in [0, 1], as stored or in linear light.
 static enum orl_result take_pixels(const struct heif_file *file, const struct heif_image *from,
-                                   bool linear, struct orl_image *image)
+                                   struct orl_image *image)
 {
     int stride, wide = file->bits > 8;
     const uint8_t *rows = heif_image_get_plane_readonly(from, heif_channel_interleaved, &stride);
     int bits = heif_image_get_bits_per_pixel_range(from, heif_channel_interleaved);
-    float white = (float)((1u << (wide ? bits : 8)) - 1);
-    size_t row_bytes = 3 * (size_t)image->width * (wide ? 2 : 1);
-    if (!rows || stride < 0 || (size_t)stride < row_bytes || bits < 1 || bits > 16 ||
+    float white = (float)((1u << bits) - 1);
+    size_t row = 3 * (size_t)image->width;
+    if (!rows || stride < 0 || (size_t)stride < row * (wide ? 2 : 1) || bits < 1 || bits > 16 ||
         heif_image_get_primary_width(from) != image->width ||
         heif_image_get_primary_height(from) != image->height)
         return orl_fail(file->log, ORL_ERR_FORMAT, "%s: HEIF: not the picture that its header "
                         "promises", file->path);
-    float *to = image->f32;
-    for (int y = 0; y < image->height; y++, rows += stride)
-        for (size_t i = 0; i < 3 * (size_t)image->width; i++) {
-            float value = (float)(wide ? rows[2 * i] | rows[2 * i + 1] << 8 : rows[i]) / white;
-            *to++ = linear ? orl_srgb_decode(value) : value;
-        }
+    for (size_t y = 0; y < (size_t)image->height; y++, rows += stride) {
+        if (!wide)
+            memcpy(image->u8 + y * row, rows, row);
+        for (size_t i = 0; wide && i < row; i++)
+            image->f32[y * row + i] = (float)(rows[2 * i] | rows[2 * i + 1] << 8) / white;
+    }
     return ORL_OK;
 }
 
-enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *path,
-                                       struct orl_image *image)
+enum orl_result orl_heif_decode(const struct orl_log *log, const char *path, struct orl_image *image)
 {
     struct heif_file file;
     struct heif_image *decoded = NULL;
-    struct orl_profile *profile = NULL;
     enum orl_result result = open_heif(log, path, &file);
-    // Bytes per pixel: planes and RGB of up to 16 bits each, and three floats.
+    bool wide = file.bits > 8;
+    // Bytes per pixel: planes and RGB of up to 16 bits each, and three samples.
     ORL_THEN(result, orl_picture_check_memory(log, path, file.width, file.height, 6 + 6 + 3 * sizeof(float)));
     ORL_THEN(result, check_curve(&file));
-    ORL_THEN(result, make_profile(&file, &profile));
     ORL_THEN(result, check(&file, heif_decode_image(file.picture, &decoded, heif_colorspace_RGB,
-                                                    file.bits > 8
-                                                        ? heif_chroma_interleaved_RRGGBB_LE
-                                                        : heif_chroma_interleaved_RGB, NULL)));
-    ORL_THEN(result, orl_image_init(log, image, (int)file.width, (int)file.height, 3, ORL_PIXEL_F32));
-    ORL_THEN(result, take_pixels(&file, decoded, !profile, image));
-    if (result == ORL_OK && profile)
-        orl_profile_apply(profile, image);
+                                                    wide ? heif_chroma_interleaved_RRGGBB_LE
+                                                         : heif_chroma_interleaved_RGB, NULL)));
+    ORL_THEN(result, orl_image_init(log, image, (int)file.width, (int)file.height, 3,
+                                    wide ? ORL_PIXEL_F32 : ORL_PIXEL_U8));
+    ORL_THEN(result, take_pixels(&file, decoded, image));
     heif_image_release(decoded);
-    orl_profile_destroy(&profile);
     close_heif(&file);
     return result;
 }

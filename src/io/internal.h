@@ -57,8 +57,8 @@ enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path,
 enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                size_t size, struct orl_image *image);
 
-// TIFF, RAW and HEIF are read from the file at `path`, as their libraries require. Values are linear
-// light, F32 x3; exif is filled from the header. After an error the caller releases what there is of the image.
+// TIFF, RAW and HEIF are read from the file at `path`, as their libraries require; exif is filled from the header.
+// Values of TIFF and RAW are linear light, F32 x3. After an error the caller releases what there is of the image.
 enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
                                  struct orl_picture_info *info, struct orl_exif *exif);
 enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,
@@ -71,12 +71,15 @@ enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *pat
 // The primaries that an EXR file states in "chromaticities"; false: they are those of Rec. 709.
 bool orl_exr_primaries(const char *path, struct orl_primaries *primaries);
 
+struct orl_profile;
 // HEIC and AVIF, recognised by their first 12 bytes.
 bool orl_heif_is(const uint8_t *data, size_t size);
 enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
                                  struct orl_picture_info *info, struct orl_exif *exif);
-enum orl_result orl_heif_decode_linear(const struct orl_log *log, const char *path,
-                                       struct orl_image *image);
+// Bits of a sample, and the colour profile; NULL: the colours are taken as sRGB. 0 and NULL for a damaged file.
+void orl_heif_profile(const struct orl_log *log, const char *path, int *bits, struct orl_profile **profile);
+// Samples as stored, x3: U8, or of more than 8 bits F32 in [0, 1].
+enum orl_result orl_heif_decode(const struct orl_log *log, const char *path, struct orl_image *image);
 
 // A conversion from the RGB or grey space of a colour profile (ICC) to linear light, Rec. 709
 // primaries.
@@ -92,7 +95,10 @@ struct orl_profile *orl_profile_create_rgb(const struct orl_log *log, const char
 void orl_profile_destroy(struct orl_profile **profile);
 // Converts stored samples in [0, 1], F32 x3, to linear light. Colours outside the Rec. 709 gamut
 // are clipped to it.
-void orl_profile_apply(const struct orl_profile *profile, struct orl_image *image);
+void orl_profile_to_linear(const struct orl_profile *profile, struct orl_image *image);
+// Converts stored samples, U8 x3, to sRGB within one step, in a tenth of the time.
+enum orl_result orl_profile_to_srgb(const struct orl_log *log, const struct orl_profile *profile,
+                                    struct orl_image *image) ORL_CHECK_RESULT;
 
 // Copies a text of at most `count` bytes, which ends before a zero byte, into `size` bytes.
 void orl_exif_text(const void *bytes, size_t count, char *text, size_t size);

@@ -166,7 +166,7 @@ static const struct {
                                struct orl_exif *exif);
     enum orl_result (*decode_linear)(const struct orl_log *log, const char *path, struct orl_image *image);
 } by_path[FORMATS] = {[FORMAT_TIFF] = {orl_tiff_inspect, orl_tiff_decode_linear},
-                      [FORMAT_HEIF] = {orl_heif_inspect, orl_heif_decode_linear},
+                      [FORMAT_HEIF] = {orl_heif_inspect, NULL},
                       [FORMAT_RAW] = {orl_raw_inspect, orl_raw_decode_linear},
                       [FORMAT_EXR] = {inspect_exr, read_exr}};
 
@@ -223,7 +223,7 @@ static enum orl_result read_exr(const struct orl_log *log, const char *path,
         struct orl_profile *profile =
             orl_exr_primaries(path, &primaries) ? orl_profile_create_rgb(log, path, &primaries, 1) : NULL;
         if (profile)
-            orl_profile_apply(profile, image);
+            orl_profile_to_linear(profile, image);
         orl_profile_destroy(&profile);
         return ORL_OK;
     }
@@ -237,29 +237,42 @@ static enum orl_result read_exr(const struct orl_log *log, const char *path,
     return result;
 }
 
-// What a file is, and the colour profile of JPEG and PNG; NULL: the colours are taken as sRGB. Damage is left
-// to the decoder to find. profile_log: is told of a profile that cannot be used
+// What is known of a file before its pixels are decoded.
+struct facts {
+    enum format format;
+    int bits; // a sample; 0: not known
+    struct orl_profile *profile; // of the samples as stored, owned; NULL: they are taken as sRGB, or decoded as light
+};
+
+// Damage is left to the decoder to find. profile_log: is told of a profile that cannot be used
 static enum orl_result look_at(const struct orl_log *log, const struct orl_log *profile_log, const char *path,
-                               enum format *format, struct orl_profile **profile)
+                               struct facts *facts)
 {
     struct orl_picture_header header = {0};
     FILE *stream = NULL;
-    ORL_TRY(open_file(log, path, &stream, format));
-    bool read = (*format == FORMAT_JPEG && orl_jpeg_read_header(NULL, path, stream, &header) == ORL_OK) ||
-                (*format == FORMAT_PNG && orl_png_read_header(NULL, path, stream, &header) == ORL_OK);
-    *profile = read ? make_profile(profile_log, path, &header) : NULL;
+    *facts = (struct facts){0};
+    ORL_TRY(open_file(log, path, &stream, &facts->format));
+    enum format format = facts->format;
+    if ((format == FORMAT_JPEG && orl_jpeg_read_header(NULL, path, stream, &header) == ORL_OK) ||
+        (format == FORMAT_PNG && orl_png_read_header(NULL, path, stream, &header) == ORL_OK))
+        facts->profile = make_profile(profile_log, path, &header);
+    facts->bits = header.info.bits;
+    if (format == FORMAT_HEIF)
+        orl_heif_profile(profile_log, path, &facts->bits, &facts->profile);
     fclose(stream);
     free(header.exif.data);
     free(header.icc.data);
     return ORL_OK;
 }
 
-// Decodes the samples of a JPEG, PNG or PNM file as stored. channels: of JPEG; kind: of PNG
+// Decodes the samples of a JPEG, PNG, PNM or HEIF file as stored. channels: of JPEG; kind: of PNG
 static enum orl_result decode_file(const struct orl_log *log, const char *path, enum format format, int channels,
                                    enum orl_png_kind kind, struct orl_image *image)
 {
     uint8_t *data = NULL;
     size_t size = 0;
+    if (format == FORMAT_HEIF)
+        return orl_heif_decode(log, path, image);
     ORL_TRY(orl_file_read(log, path, max_file_bytes, &data, &size));
     enum orl_result result = format == FORMAT_JPEG  ? orl_jpeg_decode(log, path, data, size, channels, image)
                              : format == FORMAT_PNG ? orl_png_decode(log, path, data, size, kind, image)
@@ -268,42 +281,49 @@ static enum orl_result decode_file(const struct orl_log *log, const char *path, 
     return result;
 }
 
-static enum orl_result decode_linear(const struct orl_log *log, const char *path,
-                                     enum format format, const struct orl_profile *profile,
+// Makes floats of 8-bit samples: light, or with a profile samples as stored.
+static enum orl_result widen(const struct orl_log *log, const char *path, bool stored, struct orl_image *image)
+{
+    struct orl_image wide = {0};
+    float value[256];
+    for (int v = 0; v < 256; v++)
+        value[v] = stored ? (float)v / 255 : orl_srgb_decode((float)v / 255);
+    enum orl_result result = orl_picture_check_memory(log, path, (uint64_t)image->width, (uint64_t)image->height,
+                                                      3 * sizeof(float));
+    ORL_THEN(result, orl_image_init(log, &wide, image->width, image->height, 3, ORL_PIXEL_F32));
+    const size_t count = result == ORL_OK ? orl_image_bytes(image) : 0;
+    for (size_t i = 0; i < count; i++)
+        wide.f32[i] = value[image->u8[i]];
+    orl_image_finish(image);
+    *image = wide;
+    return result;
+}
+
+static enum orl_result decode_linear(const struct orl_log *log, const char *path, const struct facts *facts,
                                      struct orl_image *image)
 {
-    if (by_path[format].decode_linear)
-        return by_path[format].decode_linear(log, path, image);
-    const bool deep = format == FORMAT_PNG; // decoded to floats at once
-    struct orl_image eight = {0};
-    float light[256]; // of an 8-bit sample, or with a profile the sample as stored
-    for (int v = 0; v < 256; v++)
-        light[v] = profile ? (float)v / 255 : orl_srgb_decode((float)v / 255);
-    enum orl_result result = decode_file(log, path, format, 3, ORL_PNG_RGB_DEEP, deep ? image : &eight);
-    if (result == ORL_OK && !deep)
-        result = orl_picture_check_memory(log, path, (uint64_t)eight.width, (uint64_t)eight.height, 3 * sizeof(float));
-    if (result == ORL_OK && !deep)
-        result = orl_image_init(log, image, eight.width, eight.height, 3, ORL_PIXEL_F32);
-    const size_t count = result == ORL_OK ? orl_image_bytes(image) / sizeof(float) : 0;
-    for (size_t i = 0; !deep && i < count; i++)
-        image->f32[i] = light[eight.u8[i]];
-    for (size_t i = 0; deep && !profile && i < count; i++)
-        image->f32[i] = orl_srgb_decode(image->f32[i]);
-    if (result == ORL_OK && profile)
-        orl_profile_apply(profile, image);
-    orl_image_finish(&eight);
-    return result;
+    if (by_path[facts->format].decode_linear)
+        return by_path[facts->format].decode_linear(log, path, image);
+    ORL_TRY(decode_file(log, path, facts->format, 3, ORL_PNG_RGB_DEEP, image));
+    if (image->type == ORL_PIXEL_U8) {
+        ORL_TRY(widen(log, path, facts->profile != NULL, image));
+    } else if (!facts->profile) {
+        for (size_t i = 0; i < orl_image_bytes(image) / sizeof(float); i++)
+            image->f32[i] = orl_srgb_decode(image->f32[i]);
+    }
+    if (facts->profile)
+        orl_profile_to_linear(facts->profile, image);
+    return ORL_OK;
 }
 
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image)
 {
     memset(image, 0, sizeof *image);
-    enum format format = FORMAT_UNKNOWN;
-    struct orl_profile *profile = NULL;
-    ORL_TRY(look_at(log, log, path, &format, &profile));
-    enum orl_result result = decode_linear(log, path, format, profile, image);
-    orl_profile_destroy(&profile);
+    struct facts facts;
+    ORL_TRY(look_at(log, log, path, &facts));
+    enum orl_result result = decode_linear(log, path, &facts, image);
+    orl_profile_destroy(&facts.profile);
     if (result != ORL_OK)
         orl_image_finish(image);
     return result;
@@ -340,15 +360,17 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
     memset(image, 0, sizeof *image);
     ORL_REQUIRE(log, channels == 1 || channels == 3);
     struct orl_image linear = {0};
-    enum format format = FORMAT_UNKNOWN;
-    struct orl_profile *profile = NULL;
-    ORL_TRY(look_at(log, NULL, path, &format, &profile));
-    bool eight = !profile && (format == FORMAT_JPEG || format == FORMAT_PNG ||
-                              format == FORMAT_PNM);
-    orl_profile_destroy(&profile);
-    enum orl_result result = eight ? decode_file(log, path, format, channels, ORL_PNG_RGB, image)
+    struct facts facts;
+    ORL_TRY(look_at(log, NULL, path, &facts));
+    // PNG of 16 bits is rounded to 8 unless it has a profile.
+    bool deep = facts.bits > 8 && (facts.profile || facts.format != FORMAT_PNG);
+    bool eight = !by_path[facts.format].decode_linear && !deep;
+    enum orl_result result = eight ? decode_file(log, path, facts.format, facts.profile ? 3 : channels, ORL_PNG_RGB, image)
                                    : orl_picture_read_linear(log, path, &linear);
-    if (result == ORL_OK && linear.data)
+    if (result == ORL_OK && eight && facts.profile)
+        result = orl_profile_to_srgb(log, facts.profile, image);
+    orl_profile_destroy(&facts.profile);
+    if (result == ORL_OK && !eight)
         result = encode_eight(log, &linear, image);
     if (result == ORL_OK && image->channels != channels)
         result = to_luma(log, image);

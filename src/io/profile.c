@@ -12,7 +12,8 @@ const struct orl_primaries orl_primaries_rec709 = {
     .white = {0.3127, 0.3290}, .red = {0.64, 0.33}, .green = {0.30, 0.60}, .blue = {0.15, 0.06}};
 
 struct orl_profile {
-    cmsHTRANSFORM transform;
+    cmsHPROFILE from;
+    cmsHTRANSFORM to_linear;
     bool grey; // one channel
 };
 
@@ -30,6 +31,19 @@ static cmsHPROFILE make_rgb(const struct orl_primaries *p, double gamma)
     return profile;
 }
 
+// From samples of the profile to RGB of Rec. 709 primaries, light raised to 1 / gamma, or with 0 by sRGB's curve.
+static cmsHTRANSFORM make_transform(const struct orl_profile *profile, cmsUInt32Number samples, double gamma,
+                                    cmsUInt32Number rgb)
+{
+    cmsHPROFILE to = make_rgb(&orl_primaries_rec709, gamma);
+    cmsHTRANSFORM transform = to ? cmsCreateTransform(profile->from, samples, to, rgb,
+                                                      INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE)
+                                 : NULL;
+    if (to)
+        cmsCloseProfile(to);
+    return transform;
+}
+
 // Compares colours over the whole cube, whatever the profile is called.
 static bool is_srgb(const struct orl_profile *profile)
 {
@@ -42,7 +56,7 @@ static bool is_srgb(const struct orl_profile *profile)
         float linear[3];
         if (profile->grey && !(stored[0] == stored[1] && stored[1] == stored[2]))
             continue;
-        cmsDoTransform(profile->transform, stored, linear, 1);
+        cmsDoTransform(profile->to_linear, stored, linear, 1);
         for (int c = 0; c < 3; c++)
             if (fabsf(orl_srgb_encode(linear[c]) - stored[c]) > tolerance)
                 return false;
@@ -54,21 +68,20 @@ static bool is_srgb(const struct orl_profile *profile)
 static struct orl_profile *create(const struct orl_log *log, const char *path, cmsHPROFILE from,
                                   const char *unusable, bool exact)
 {
-    cmsHPROFILE to = make_rgb(&orl_primaries_rec709, 1);
     cmsColorSpaceSignature space = from ? cmsGetColorSpace(from) : cmsSigLabData;
     struct orl_profile *profile = orl_array(log, 1, sizeof *profile);
-    if (profile)
-        profile->grey = space == cmsSigGrayData;
-    if (profile && to && (profile->grey || space == cmsSigRgbData))
-        profile->transform = cmsCreateTransform(from, profile->grey ? TYPE_GRAY_FLT : TYPE_RGB_FLT, to, TYPE_RGB_FLT,
-                                                INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE);
-    if (from)
-        cmsCloseProfile(from);
-    if (to)
-        cmsCloseProfile(to);
-    if (profile && !profile->transform)
+    if (!profile) {
+        if (from)
+            cmsCloseProfile(from);
+        return NULL;
+    }
+    profile->from = from;
+    profile->grey = space == cmsSigGrayData;
+    if (profile->grey || space == cmsSigRgbData)
+        profile->to_linear = make_transform(profile, profile->grey ? TYPE_GRAY_FLT : TYPE_RGB_FLT, 1, TYPE_RGB_FLT);
+    if (!profile->to_linear)
         orl_logf(log, ORL_LOG_WARNING, "%s: its %s", path, unusable);
-    if (profile && (!profile->transform || (!exact && is_srgb(profile))))
+    if (!profile->to_linear || (!exact && is_srgb(profile)))
         orl_profile_destroy(&profile);
     return profile;
 }
@@ -92,13 +105,15 @@ void orl_profile_destroy(struct orl_profile **handle)
     struct orl_profile *profile = *handle;
     if (!profile)
         return;
-    if (profile->transform)
-        cmsDeleteTransform(profile->transform);
+    if (profile->to_linear)
+        cmsDeleteTransform(profile->to_linear);
+    if (profile->from)
+        cmsCloseProfile(profile->from);
     free(profile);
     *handle = NULL;
 }
 
-void orl_profile_apply(const struct orl_profile *profile, struct orl_image *image)
+void orl_profile_to_linear(const struct orl_profile *profile, struct orl_image *image)
 {
     size_t width = (size_t)image->width;
     for (size_t y = 0; y < (size_t)image->height; y++) {
@@ -107,8 +122,25 @@ void orl_profile_apply(const struct orl_profile *profile, struct orl_image *imag
         float *from = profile->grey ? row + 2 * width : row;
         for (size_t i = 0; profile->grey && i < width; i++)
             from[i] = row[3 * i];
-        cmsDoTransform(profile->transform, from, row, (cmsUInt32Number)width);
+        cmsDoTransform(profile->to_linear, from, row, (cmsUInt32Number)width);
         for (size_t i = 0; i < 3 * width; i++)
             row[i] = row[i] > 0 ? row[i] : 0;
     }
+}
+
+enum orl_result orl_profile_to_srgb(const struct orl_log *log, const struct orl_profile *profile,
+                                    struct orl_image *image)
+{
+    size_t width = (size_t)image->width;
+    cmsHTRANSFORM transform = make_transform(profile, profile->grey ? TYPE_GRAY_8 : TYPE_RGB_8, 0, TYPE_RGB_8);
+    if (!transform)
+        return orl_fail(log, ORL_ERR_MEMORY, "no memory to convert colours");
+    for (size_t y = 0; y < (size_t)image->height; y++) {
+        uint8_t *row = image->u8 + 3 * y * width, *from = profile->grey ? row + 2 * width : row; // as above
+        for (size_t i = 0; profile->grey && i < width; i++)
+            from[i] = row[3 * i];
+        cmsDoTransform(transform, from, row, (cmsUInt32Number)width);
+    }
+    cmsDeleteTransform(transform);
+    return ORL_OK;
 }

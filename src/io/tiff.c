@@ -259,7 +259,7 @@ enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *pa
     ORL_THEN(result, orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32));
     ORL_THEN(result, read_tiles(&job, image));
     if (result == ORL_OK && profile)
-        orl_profile_apply(profile, image);
+        orl_profile_to_linear(profile, image);
     orl_profile_destroy(&profile);
     if (job.tiff)
         TIFFClose(job.tiff);

@@ -6,6 +6,7 @@
 #include <lcms2.h>
 #include <libheif/heif.h>
 
+#include "core/color.h"
 #include "io/internal.h"
 #include "io/picture.h"
 
@@ -158,7 +159,7 @@ static void colour_profiles_are_applied(void **state)
     cmsCloseProfile(profile);
     cmsFreeToneCurve(line);
     struct heif_image *picture = make_picture(8);
-    struct orl_image image;
+    struct orl_image image, eight;
     fine(heif_image_set_raw_color_profile(picture, "prof", icc, size));
     assert_true(get_encoder(heif_compression_HEVC));
     save(picture, heif_orientation_normal, NULL);
@@ -169,7 +170,12 @@ static void colour_profiles_are_applied(void **state)
     // P3's primaries in those of Rec. 709.
     assert_float_equal(rgb[0], 1.2249f * r - 0.2249f * g, 0.03);
     assert_float_equal(rgb[1], -0.0420f * r + 1.0420f * g, 0.03);
+    // As sRGB of 8 bits, for which it does not go by light.
+    assert_int_equal(orl_picture_read(NULL, file, 3, &eight), ORL_OK);
+    for (int i = 0; i < 3 * W * H; i++)
+        assert_float_equal(eight.u8[i], 255 * orl_srgb_encode(image.f32[i]), 1.01);
     orl_image_finish(&image);
+    orl_image_finish(&eight);
 }
 
 // libheif writes no gain map: the alpha of a picture is renamed to one.
