@@ -165,6 +165,33 @@ static void a_tile_lists_a_photograph_that_sees_it(void **state)
     teardown(&f);
 }
 
+// The same beside a wall, where the depth is a guess: what hides it from the nearer photographs may as well be there. The
+// red photograph from far aside does not paint it, and it takes the colours around it: of the plate, and of the wall, which
+// a blue photograph shows.
+static void what_hides_a_guess_is_no_reason_to_ask_others(void **state)
+{
+    (void)state;
+    enum { WALL = 80, PLATE = 40, TILE = 16 };
+    struct fixture f;
+    setup_empty(&f, 4);
+    assert_int_equal(orl_points_init(NULL, &f.scene.points, WALL * WALL + PLATE * PLATE), ORL_OK);
+    set_square(&f.scene.points, 0, WALL, 1.8, -2.1, 4, red);
+    set_square(&f.scene.points, WALL * WALL, PLATE, 1, 1, 2, blue);
+    struct orl_view wall = look_from(-0.2, 0, 0, 96, 40);
+    wall.camera.cx = 103; // the tile begins at -0.8, 97 pixels from the left
+    add_photo(&f, wall, blue);
+    add_photo(&f, look_from(2, 0, 0, 96, 40), green);
+    add_photo(&f, look_from(2, 0.1, 0, 96, 40), green);
+    add_photo(&f, look_from(-2.6, 0, 0, 96, 40), red);
+    struct orl_render_params params = best();
+    params.photos_per_pixel = 1;
+    params.guess_depths = 0;
+    struct orl_frame frame = draw(gpu, &f, look(0, 0, 0), &params, 0);
+    assert_float_equal(color_at(&frame, 24, 24)[0], 0, 0.01);
+    orl_frame_finish(&frame);
+    teardown(&f);
+}
+
 // The best photograph begins in the middle of four pixels that are made at once. The second one paints those that it
 // does not show.
 static void each_pixel_gets_its_photographs(void **state)
@@ -554,6 +581,7 @@ int main(void)
         cmocka_unit_test(a_small_move_changes_little),
         cmocka_unit_test(what_is_small_in_a_tile_is_painted),
         cmocka_unit_test(a_tile_lists_a_photograph_that_sees_it),
+        cmocka_unit_test(what_hides_a_guess_is_no_reason_to_ask_others),
         cmocka_unit_test(each_pixel_gets_its_photographs),
         cmocka_unit_test(the_best_lends_its_detail),
         cmocka_unit_test(what_an_edge_loses_is_lent), cmocka_unit_test(an_area_lends_nothing),
