@@ -83,7 +83,7 @@ static enum orl_result match(struct orl_job *job, const struct import_job *impor
 {
     struct orl_pair_list list;
     enum orl_result result = orl_import_pairs(import, &list);
-    ORL_THEN(result, orl_match_list(job, DATABASE, &list));
+    ORL_THEN(result, orl_match_list(job, DATABASE, false, &list));
     orl_pairs_finish(&list);
     return result;
 }

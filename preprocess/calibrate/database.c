@@ -50,6 +50,8 @@ enum orl_result orl_database_open(const struct orl_log *log, const char *path,
     enum orl_result result = db->path ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK &&
         (!open_file(path, SQLITE_OPEN_READWRITE, &db->handle) ||
+         // As COLMAP does: what is whole is flushed as a folder, and some drives cannot flush.
+         sqlite3_exec(db->handle, "PRAGMA synchronous = OFF", NULL, NULL, NULL) != SQLITE_OK ||
          sqlite3_prepare_v2(db->handle, sql, -1, &db->features, NULL) != SQLITE_OK))
         result = fail(db);
     if (result == ORL_OK)

@@ -13,6 +13,7 @@ enum {
     EXHAUSTIVE_MAX = 25,                      // photographs up to which auto matches all pairs
     FEATURES = 2 * ORL_PREEMPT_FEATURES,      // of a photograph, for choosing pairs
     RUN_PAIRS = 64,                           // pairs whose features are in memory at once
+    NEIGHBOURS = 20,                          // by name, on either side, that sequential matches
 };
 static const double VERIFYING = 0.1; // of the time that matching a pair takes
 
@@ -23,32 +24,7 @@ enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs)
     return photographs <= EXHAUSTIVE_MAX ? ORL_MATCHING_EXHAUSTIVE : ORL_MATCHING_RETRIEVAL;
 }
 
-static void matcher_settings(const struct orl_job *job, const char *database, bool guided,
-                             struct orl_colmap_run *run)
-{
-    orl_colmap_arg(run, "--database_path", "%s/%s", job->dir, database);
-    orl_colmap_arg(run, "--random_seed", "%u", job->params->seed);
-    orl_colmap_arg(run, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
-    orl_colmap_arg(run, "--SiftMatching.guided_matching", "%d", guided);
-}
-
-// Pairs that COLMAP chooses: all, or neighbours by name.
-static enum orl_result match_by_colmap(struct orl_job *job, bool sequential, bool guided)
-{
-    struct orl_colmap_run run = {.command = sequential ? "sequential_matcher" : "exhaustive_matcher",
-                                 .step = "matching"};
-    matcher_settings(job, ORL_CALIBRATE_DATABASE, guided, &run);
-    if (sequential) {
-        orl_colmap_arg(&run, "--SequentialMatching.overlap", "20");
-    } else {
-        // Smaller blocks than COLMAP's 50 show progress; their cost is the same.
-        size_t block = job->source_count / 8;
-        orl_colmap_arg(&run, "--ExhaustiveMatching.block_size", "%zu", block < 5 ? 5 : block);
-    }
-    return orl_job_colmap(job, &run);
-}
-
-// --- pairs that Oriel chooses ---
+// --- matching a list of pairs ---
 
 static char *without_spaces(const struct orl_log *log, const char *name)
 {
@@ -109,7 +85,7 @@ static enum orl_result match_features(const struct orl_job *job, const char *dat
 }
 
 // COLMAP verifies the matches of pairs first to first + count - 1, and finds those that are missing.
-static enum orl_result verify(struct orl_job *job, const char *name,
+static enum orl_result verify(struct orl_job *job, const char *name, bool guided,
                               const struct orl_pair_list *list, size_t first, size_t count)
 {
     struct orl_names lines = {0};
@@ -122,7 +98,10 @@ static enum orl_result verify(struct orl_job *job, const char *name,
     ORL_THEN(result, orl_job_write_list(job, path, &lines));
     ORL_THEN(result, hide_spaces(job, name, true));
     if (result == ORL_OK) {
-        matcher_settings(job, name, false, &run);
+        orl_colmap_arg(&run, "--database_path", "%s/%s", job->dir, name);
+        orl_colmap_arg(&run, "--random_seed", "%u", job->params->seed);
+        orl_colmap_arg(&run, "--SiftMatching.use_gpu", "%d", job->colmap_cuda);
+        orl_colmap_arg(&run, "--SiftMatching.guided_matching", "%d", guided);
         orl_colmap_arg(&run, "--match_list_path", "%s", path);
         orl_colmap_arg(&run, "--match_type", "pairs");
         result = orl_job_colmap(job, &run);
@@ -132,7 +111,7 @@ static enum orl_result verify(struct orl_job *job, const char *name,
     return result;
 }
 
-enum orl_result orl_match_list(struct orl_job *job, const char *database,
+enum orl_result orl_match_list(struct orl_job *job, const char *database, bool guided,
                                const struct orl_pair_list *list)
 {
     for (size_t first = 0; first < list->count; first += RUN_PAIRS) {
@@ -140,10 +119,12 @@ enum orl_result orl_match_list(struct orl_job *job, const char *database,
         // A CUDA build of COLMAP matches faster on its GPU.
         if (!job->colmap_cuda)
             ORL_TRY(match_features(job, database, list, first, count));
-        ORL_TRY(verify(job, database, list, first, count));
+        ORL_TRY(verify(job, database, guided, list, first, count));
     }
     return ORL_OK;
 }
+
+// --- which pairs ---
 
 static enum orl_result read_photos(const struct orl_job *job, const char *database,
                                    struct orl_pair_photo *photos)
@@ -187,37 +168,42 @@ enum orl_result orl_match_choose(struct orl_job *job, const char *database,
     return result;
 }
 
-static enum orl_result match_retrieved(struct orl_job *job, struct orl_match_summary *summary)
+// All pairs; near: of neighbours by name, and of those 2, 4, 8, ... further; marked: of which one is marked.
+static enum orl_result list_pairs(const struct orl_job *job, bool near, const bool *marked, struct orl_pair_list *list)
 {
-    struct orl_pair_list list;
-    enum orl_result result = orl_match_choose(job, ORL_CALIBRATE_DATABASE, &list, summary);
-    ORL_THEN(result, orl_match_list(job, ORL_CALIBRATE_DATABASE, &list));
-    orl_pairs_finish(&list);
+    size_t n = job->source_count;
+    list->items = orl_array(job->log, n * (n - 1) / 2, sizeof *list->items);
+    ORL_TRY_MEMORY(list->items);
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = a + 1; b < n; b++) {
+            size_t apart = b - a;
+            if ((!near || apart <= NEIGHBOURS || (apart & (apart - 1)) == 0) && (!marked || marked[a] || marked[b]))
+                list->items[list->count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
+        }
+    return ORL_OK;
+}
+
+static enum orl_result match_and_free(struct orl_job *job, bool guided, struct orl_pair_list *list)
+{
+    enum orl_result result = orl_match_list(job, ORL_CALIBRATE_DATABASE, guided, list);
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "matching", 1, 1, NULL);
+    orl_pairs_finish(list);
     return result;
 }
 
 enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
                           struct orl_match_summary *summary)
 {
-    ORL_TRY(way == ORL_MATCHING_RETRIEVAL
-                ? match_retrieved(job, summary)
-                : match_by_colmap(job, way == ORL_MATCHING_SEQUENTIAL, guided));
-    orl_progress_report(job->progress, "matching", 1, 1, NULL);
-    return ORL_OK;
+    struct orl_pair_list list = {0};
+    ORL_TRY(way == ORL_MATCHING_RETRIEVAL ? orl_match_choose(job, ORL_CALIBRATE_DATABASE, &list, summary)
+                                          : list_pairs(job, way == ORL_MATCHING_SEQUENTIAL, NULL, &list));
+    return match_and_free(job, guided, &list);
 }
 
 enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)
 {
-    size_t n = job->source_count;
-    struct orl_pair_list list = {.items = orl_array(job->log, n * (n - 1) / 2, sizeof *list.items)};
-    ORL_TRY_MEMORY(list.items);
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = a + 1; b < n; b++)
-            if (marked[a] || marked[b])
-                list.items[list.count++] = (struct orl_pair){(uint32_t)a, (uint32_t)b};
-    enum orl_result result = orl_match_list(job, ORL_CALIBRATE_DATABASE, &list);
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "matching", 1, 1, NULL);
-    orl_pairs_finish(&list);
-    return result;
+    struct orl_pair_list list = {0};
+    ORL_TRY(list_pairs(job, false, marked, &list));
+    return match_and_free(job, false, &list);
 }

@@ -1,4 +1,4 @@
-// Matches between the photographs' features, by COLMAP, for the pairs that are worth it.
+// Matches between the photographs' features, for the pairs that are worth it, verified by COLMAP.
 #ifndef ORL_PREPROCESS_MATCH_H
 #define ORL_PREPROCESS_MATCH_H
 
@@ -21,7 +21,8 @@ struct orl_match_summary {
     size_t tried, chosen; // pairs
     double choosing_s;
 };
-// summary: stays as it is by the other ways, whose pairs COLMAP chooses, and may be NULL for them.
+// guided: COLMAP also looks for matches by the geometry that it verified. summary: stays as it is by other ways than
+// retrieval, and may be NULL for them.
 enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
                           struct orl_match_summary *summary) ORL_CHECK_RESULT;
 // Chooses pairs by retrieval from the features in `database`, a name below the scene. *list is
@@ -29,8 +30,8 @@ enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guide
 enum orl_result orl_match_choose(struct orl_job *job, const char *database,
                                  struct orl_pair_list *list,
                                  struct orl_match_summary *summary) ORL_CHECK_RESULT;
-// Matches these pairs and has COLMAP verify the matches, in `database`, a name below the scene.
-enum orl_result orl_match_list(struct orl_job *job, const char *database,
+// Matches these pairs and has COLMAP verify the matches, in `database`, a name below the scene; guided: as above.
+enum orl_result orl_match_list(struct orl_job *job, const char *database, bool guided,
                                const struct orl_pair_list *list) ORL_CHECK_RESULT;
 // Matches the marked photographs with all others. Pairs that have matches keep them.
 enum orl_result orl_match_marked(struct orl_job *job, const bool *marked) ORL_CHECK_RESULT;

@@ -243,7 +243,7 @@ static enum orl_result run_matches(const struct part *part)
             result = orl_database_take_features(db, job->sources[i].name);
     ORL_THEN(result, orl_database_detach(db));
     orl_database_close(&db);
-    ORL_THEN(result, orl_match_list(job, part->temp_db, &own));
+    ORL_THEN(result, orl_match_list(job, part->temp_db, false, &own));
     orl_pairs_finish(&list);
     free(used);
     return result;

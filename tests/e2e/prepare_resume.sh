@@ -5,7 +5,7 @@
 double=$source/tests/e2e/colmap_double
 photos "$work/p" 0.png 1.png 2.png 3.png 4.png
 scene=$work/s
-all="feature_extractor exhaustive_matcher mapper image_undistorter patch_match_stereo"
+all="feature_extractor matches_importer mapper image_undistorter patch_match_stereo"
 
 prepare() {
     local expected=$1
