@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <sqlite3.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -248,6 +249,14 @@ enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, 
 static enum orl_result run_sql(struct orl_database *db, const char *sql)
 {
     return sqlite3_exec(db->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? ORL_OK : fail(db);
+}
+
+enum orl_result orl_database_drop_features(struct orl_database *db, int least)
+{
+    char sql[160];
+    snprintf(sql, sizeof sql, "DELETE FROM descriptors WHERE rows < %d; DELETE FROM keypoints WHERE rows < %d;", least,
+             least);
+    return run_sql(db, sql);
 }
 
 enum orl_result orl_database_begin(struct orl_database *db)

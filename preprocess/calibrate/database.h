@@ -22,6 +22,8 @@ struct orl_features {
 };
 enum orl_result orl_database_features(struct orl_database *db, const char *name,
                                       struct orl_features *features) ORL_CHECK_RESULT;
+// Makes photographs with fewer features than `least` ones without any.
+enum orl_result orl_database_drop_features(struct orl_database *db, int least) ORL_CHECK_RESULT;
 // Matches of two photographs, by COLMAP's ids: indices of their features.
 enum orl_result orl_database_has_matches(struct orl_database *db, uint32_t a, uint32_t b,
                                          bool *has) ORL_CHECK_RESULT;

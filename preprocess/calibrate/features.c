@@ -1,5 +1,6 @@
 #include "preprocess/calibrate/features.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,17 +79,35 @@ enum orl_result orl_features_link_masks(const struct orl_job *job)
     return ORL_OK;
 }
 
-static void feature_settings(const struct orl_job *job, bool costly, struct orl_colmap_run *run)
+// Larger side in pixels that features are taken at, at most, and the most features of a photograph.
+static const int sizes[] = {[ORL_QUALITY_DRAFT] = 1600, [ORL_QUALITY_STANDARD] = 3200, [ORL_QUALITY_HIGH] = 3200};
+static const int counts[] = {[ORL_QUALITY_DRAFT] = 4096, [ORL_QUALITY_STANDARD] = 8192, [ORL_QUALITY_HIGH] = 16384};
+
+// Features that COLMAP extracts in one go. coarse: of large photographs, without enlarging them.
+struct pass {
+    const struct orl_features_run *run;
+    bool coarse;
+};
+
+// Whether the photograph may have enough features without being enlarged to twice its size first.
+static bool is_large(const struct orl_job *job, const struct orl_source *source)
 {
-    static const int sizes[] = {[ORL_QUALITY_DRAFT] = 1600, [ORL_QUALITY_STANDARD] = 3200,
-                                [ORL_QUALITY_HIGH] = 3200};
-    static const int counts[] = {[ORL_QUALITY_DRAFT] = 4096, [ORL_QUALITY_STANDARD] = 8192,
-                                 [ORL_QUALITY_HIGH] = 16384};
+    const double large = 4e6; // pixels
+    double larger = source->width > source->height ? source->width : source->height;
+    double scale = fmin(1, sizes[job->params->quality] / larger);
+    return scale * source->width * scale * source->height >= large;
+}
+
+static void feature_settings(const struct orl_job *job, const struct pass *pass, struct orl_colmap_run *run)
+{
     enum orl_quality quality = job->params->quality;
+    bool costly = pass->run->costly;
     orl_colmap_arg(run, "--SiftExtraction.use_gpu", "%d", job->colmap_cuda && !costly);
     orl_colmap_arg(run, "--SiftExtraction.max_image_size", "%d", sizes[quality]);
     orl_colmap_arg(run, "--SiftExtraction.max_num_features", "%d",
                    counts[quality] * (costly ? 2 : 1));
+    if (pass->coarse)
+        orl_colmap_arg(run, "--SiftExtraction.first_octave", "0");
     if (costly) {
         orl_colmap_arg(run, "--SiftExtraction.estimate_affine_shape", "1");
         orl_colmap_arg(run, "--SiftExtraction.domain_size_pooling", "1");
@@ -98,17 +117,17 @@ static void feature_settings(const struct orl_job *job, bool costly, struct orl_
 
 // Features of the photographs in `names`, which share a camera of `size` photographs in all, or have
 // one each (size 1).
-static enum orl_result extract(struct orl_job *job, const struct orl_features_run *run,
-                               const struct orl_names *names, int size, double done, double total)
+static enum orl_result extract(struct orl_job *job, const struct pass *pass, const struct orl_names *names,
+                               int size, double done, double total)
 {
     struct orl_colmap_run colmap = {.command = "feature_extractor", .step = "features", .done = done,
                                     .share = (double)names->count, .total = total};
-    const char *list = ORL_PATH(job->dir, "%s.txt", run->database);
+    const char *database = pass->run->database, *list = ORL_PATH(job->dir, "%s.txt", database);
     bool normalised = orl_job_has(job, ORL_CALIBRATE_NORMALISED);
     ORL_TRY(orl_job_write_list(job, list, names));
     // More parameters need more photographs to determine them.
     bool rich = size >= 8 && job->params->quality == ORL_QUALITY_HIGH;
-    orl_colmap_arg(&colmap, "--database_path", "%s/%s.db", job->dir, run->database);
+    orl_colmap_arg(&colmap, "--database_path", "%s/%s.db", job->dir, database);
     orl_colmap_arg(&colmap, "--image_path", "%s/%s", job->dir,
                    normalised ? ORL_CALIBRATE_NORMALISED : ".oriel/photos");
     orl_colmap_arg(&colmap, "--image_list_path", "%s", list);
@@ -118,46 +137,71 @@ static enum orl_result extract(struct orl_job *job, const struct orl_features_ru
     orl_colmap_arg(&colmap, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
     if (job->params->masks_dir)
         orl_colmap_arg(&colmap, "--ImageReader.mask_path", "%s/" MASKS, job->dir);
-    feature_settings(job, run->costly, &colmap);
+    feature_settings(job, pass, &colmap);
     return orl_job_colmap(job, &colmap);
 }
 
 // Names of the photographs of a shared camera, or of all cameras that have one photograph, that lie
-// in the part. *at is the number of photographs before them in the order of cameras.
+// in the part; of a coarse pass the large ones. *at is the number of photographs before them in the order of cameras.
 static enum orl_result collect_group(const struct orl_job *job,
                                      const struct orl_camera_groups *groups, int group, bool alone,
-                                     size_t begin, size_t end, size_t *at,
+                                     bool coarse, size_t begin, size_t end, size_t *at,
                                      struct orl_names *names)
 {
     for (size_t i = 0; i < job->source_count; i++) {
         int of = groups->of[i];
         if (alone ? groups->size[of] != 1 : of != group || groups->size[of] == 1)
             continue;
-        if (*at >= begin && *at < end)
+        if (*at >= begin && *at < end && (!coarse || is_large(job, &job->sources[i])))
             ORL_TRY(orl_names_add(job->log, names, job->sources[i].name));
         ++*at;
     }
     return ORL_OK;
 }
 
-enum orl_result orl_features_extract(struct orl_job *job, const struct orl_camera_groups *groups,
-                                     const struct orl_features_run *run)
+// *count: photographs of the pass.
+static enum orl_result extract_all(struct orl_job *job, const struct orl_camera_groups *groups,
+                                   const struct pass *pass, size_t *count)
 {
+    const struct orl_features_run *run = pass->run;
     size_t begin = job->source_count * (size_t)run->part / (size_t)run->parts;
     size_t end = job->source_count * ((size_t)run->part + 1) / (size_t)run->parts, at = 0;
-    double done = 0, total = (double)(end - begin);
+    double total = (double)(end - begin);
     enum orl_result result = ORL_OK;
+    *count = 0;
     // One run a shared camera; the last one takes all that have a camera of their own.
     for (int g = 0; result == ORL_OK && g <= groups->count; g++) {
         struct orl_names names = {0};
         bool alone = g == groups->count;
-        result = collect_group(job, groups, g, alone, begin, end, &at, &names);
+        result = collect_group(job, groups, g, alone, pass->coarse, begin, end, &at, &names);
         if (result == ORL_OK && names.count)
-            result = extract(job, run, &names, alone ? 1 : groups->size[g], done, total);
-        done += (double)names.count;
+            result = extract(job, pass, &names, alone ? 1 : groups->size[g], (double)*count, total);
+        *count += names.count;
         orl_names_finish(&names);
     }
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "features", 1, 1, NULL);
     return result;
+}
+
+static enum orl_result drop_few(const struct orl_job *job, const struct orl_features_run *run)
+{
+    struct orl_database *db;
+    ORL_TRY(orl_database_open(job->log, ORL_PATH(job->dir, "%s.db", run->database), &db));
+    enum orl_result result = orl_database_drop_features(db, counts[job->params->quality]);
+    orl_database_close(&db);
+    return result;
+}
+
+enum orl_result orl_features_extract(struct orl_job *job, const struct orl_camera_groups *groups,
+                                     const struct orl_features_run *run)
+{
+    size_t count = 0;
+    // COLMAP first enlarges a photograph to twice its size, which takes three quarters of the time, and keeps the features
+    // of largest scale. Where the others alone are enough, the same ones remain. It passes over photographs with features.
+    if (!job->colmap_cuda && !run->costly)
+        ORL_TRY(extract_all(job, groups, &(struct pass){run, true}, &count));
+    if (count)
+        ORL_TRY(drop_few(job, run));
+    ORL_TRY(extract_all(job, groups, &(struct pass){run, false}, &count));
+    orl_progress_report(job->progress, "features", 1, 1, NULL);
+    return ORL_OK;
 }

@@ -77,6 +77,25 @@ unset DOUBLE_ALONE
 DOUBLE_ALONE=3.png run 2 prepare "$work/p" --out "$work/few" --test-list 0,1,2
 says "of the photographs that are not held out only 1 could be placed"
 
+# Features of large photographs are taken without enlarging these, and again where they are too few.
+mkdir "$work/large"
+for shade in 10 20 30; do
+    convert -size 2400x1700 "gradient:black-gray$shade" "$work/large/$shade.png"
+done
+extracted() {
+    local runs=$(grep -c "^feature_extractor.*$1" "$work/options")
+    [ "$runs" = "$2" ] || fail "$runs runs with '$1' instead of $2"
+}
+export DOUBLE_NO_CUDA=1 DOUBLE_OPTIONS=$work/options
+run 2 prepare "$work/large" --out "$work/coarse" --until undistort
+says "but its camera has 96x80" # the stand-in's
+extracted "first_octave 0" 1
+extracted "" 2
+: >"$work/options"
+run 0 prepare "$work/p" --out "$work/small" --until undistort
+extracted "" 1
+unset DOUBLE_NO_CUDA DOUBLE_OPTIONS
+
 # A distortion that turns back on itself: the mapper runs again without any.
 DOUBLE_BENT=1 run 0 prepare "$work/p" --out "$work/bent" --verbose
 says "a distortion that no lens has"

@@ -379,6 +379,25 @@ static void few_inliers_do_not_connect(void **state)
     orl_database_close(&db);
 }
 
+static void few_features_are_dropped(void **state)
+{
+    (void)state;
+    const float scales[] = {3, 1, 2};
+    make_tables();
+    insert_photo(1, "few.jpg", 6, scales, 2);
+    insert_photo(2, "enough.jpg", 6, scales, 3);
+    struct orl_database *db = open_database();
+    assert_int_equal(orl_database_drop_features(db, 3), ORL_OK);
+    static const char *const names[] = {"few.jpg", "enough.jpg"};
+    for (size_t i = 0; i < 2; i++) {
+        struct orl_features features;
+        assert_int_equal(orl_database_features(db, names[i], &features), ORL_OK);
+        assert_int_equal(features.count, i ? 3 : 0);
+        free(features.descriptors);
+    }
+    orl_database_close(&db);
+}
+
 static bool has_parallax(void)
 {
     bool parallax;
@@ -539,7 +558,8 @@ int main(void)
         FILE_TEST(largest_scales_come_first), FILE_TEST(no_features_is_no_error),
         FILE_TEST(says_what_is_wrong_with_features), FILE_TEST(says_what_is_no_database),
         FILE_TEST(says_when_it_is_cut_off), FILE_TEST(spaces_are_hidden_and_come_back),
-        FILE_TEST(few_inliers_do_not_connect), FILE_TEST(homographies_have_no_parallax), FILE_TEST(parts_are_joined),
+        FILE_TEST(few_inliers_do_not_connect), FILE_TEST(few_features_are_dropped), FILE_TEST(homographies_have_no_parallax),
+        FILE_TEST(parts_are_joined),
         FILE_TEST(parts_with_rigs_are_joined),
         FILE_TEST(a_part_has_the_features_of_its_pairs),
         FILE_TEST(a_part_runs_no_sql_of_a_stranger),
