@@ -219,10 +219,11 @@ enum orl_result orl_database_is_connected(struct orl_database *db, uint32_t id, 
 
 enum orl_result orl_database_has_parallax(struct orl_database *db, bool *parallax)
 {
-    // Neither unverified (0, 1), nor planar, panoramic, or one of the two (4 to 6), nor a watermark (7).
+    // Of pairs that COLMAP uses: neither unverified (0, 1), nor planar, panoramic, or one of the two (4 to 6), nor a
+    // watermark (7).
     static const char sql[] =
-        "SELECT 1 FROM two_view_geometries WHERE rows >= ?1 AND config NOT IN (0, 1, 4, 5, 6, 7) LIMIT 1";
-    return ask(db, sql, 15, parallax);
+        "SELECT 1 FROM two_view_geometries WHERE rows >= 15 AND config NOT IN (0, 1, 4, 5, 6, 7) LIMIT ?";
+    return ask(db, sql, 1, parallax);
 }
 
 enum orl_result orl_database_write_matches(struct orl_database *db, uint32_t a, uint32_t b,

@@ -33,7 +33,7 @@ void candidate_sample(photo source, vec3 p, float guess, inout float least, inou
 #endif
     if (!(p.z > 0.0) || !(photo_project(source, p, pixel, z) || backdrop))
         return;
-    // The depth is estimated less surely than the photographs' own, so that what hides it there tells nothing.
+    // An estimated depth may be wrong, so it does not count what hides the point there.
     bool in_sight = guess > 0.0 || photo_unhidden_share(source, photo_depths(source, pixel), z) > 0.9;
     float hidden = in_sight ? 1.0 : 8.0;
     least = min(least, photo_penalty(source, p) * hidden);

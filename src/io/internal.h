@@ -83,7 +83,6 @@ enum orl_result orl_heif_decode(const struct orl_log *log, const char *path, str
 
 // A conversion from the RGB or grey space of a colour profile (ICC) to linear light, Rec. 709
 // primaries.
-struct orl_profile;
 // NULL for a profile that is sRGB's within two steps of 8 bits, and, with a warning, for one that
 // cannot be used: the caller then assumes sRGB.
 struct orl_profile *orl_profile_create(const struct orl_log *log, const char *path,

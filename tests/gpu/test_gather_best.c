@@ -165,9 +165,9 @@ static void a_tile_lists_a_photograph_that_sees_it(void **state)
     teardown(&f);
 }
 
-// The same beside a wall, where the depth is a guess: what hides it from the nearer photographs may as well be there. The
-// red photograph from far aside does not paint it, and it takes the colours around it: of the plate, and of the wall, which
-// a blue photograph shows.
+// The same beside a wall, where the depth is a guess: the nearer photographs are listed although the plate hides the point.
+// So the red photograph from far aside does not paint the point, which takes the colours around it: of the plate, and of
+// the wall, which a blue photograph shows.
 static void what_hides_a_guess_is_no_reason_to_ask_others(void **state)
 {
     (void)state;
