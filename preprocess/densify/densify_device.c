@@ -245,9 +245,8 @@ static double parallax(const struct densify_job *job, const struct orl_camera *c
                        const struct densify_block *block)
 {
     double sum = 0.0, total = 0.0;
-    double w = 0.5 * (job->plan->w_min + job->plan->w_max * 0.6);
     for (int k = 0; k < job->plan->count; k++) {
-        double c[3], q[4] = {0.5 * camera->width, 0.5 * camera->height, 1.0, w};
+        double c[3], q[4] = {0.5 * camera->width, 0.5 * camera->height, 1.0, job->plan->w_typical};
         for (int i = 0; i < 3; i++) {
             const float *row = block->forward[3 * k + i];
             c[i] = row[0] * q[0] + row[1] * q[1] + row[2] * q[2] + row[3] * q[3];

@@ -17,7 +17,7 @@ struct densify_source {
 struct densify_plan {
     struct densify_source sources[ORL_DENSIFY_SOURCES_MAX]; // best first
     int count;
-    double w_min, w_max; // range of inverse depth
+    double w_min, w_max, w_typical; // inverse depth: range, and of most surfaces
 };
 
 // The photographs that take part: the requested ones that the model has.

@@ -7,8 +7,11 @@
 #include "core/order.h"
 #include "preprocess/densify/densify_internal.h"
 
-// Fewer shared points than this may be chance matches.
-enum { SHARED_MIN = 3 };
+enum {
+    SHARED_MIN = 3, // fewer shared points may be chance matches
+    OUTLIERS = 20,  // sightings of sparse points by all sources that may be wrong about near depth
+};
+static const double NEAR_SHARE = 0.6; // of the depth of the nearest points: where the range begins
 
 enum orl_result orl_densify_photos_init(const struct orl_log *log,
                                         const struct orl_colmap_model *model,
@@ -116,15 +119,13 @@ struct tally {
 
 // Range of inverse depth. Sparse points cluster on well textured surfaces, so the range extends
 // well beyond them, mostly towards greater depth, where inverse depth changes little.
-static bool depth_range(double *depths, size_t count, struct densify_plan *plan)
+static void depth_range(double *depths, size_t count, struct densify_plan *plan)
 {
-    if (!count)
-        return false;
     qsort(depths, count, sizeof *depths, orl_order_doubles);
     double near = depths[count / 100], far = depths[count - 1 - count / 100];
-    plan->w_max = 1.0 / (0.6 * near);
     plan->w_min = 1.0 / (50.0 * far);
-    return true;
+    plan->w_max = 1.0 / (NEAR_SHARE * near);
+    plan->w_typical = 0.5 * (plan->w_min + 1.0 / near);
 }
 
 static void choose_sources(const struct tally *tallies, size_t photo_count, int sources,
@@ -153,11 +154,36 @@ static void choose_sources(const struct tally *tallies, size_t photo_count, int 
             fmax(sqrt(plan->sources[k].score / plan->sources[0].score), 0.3);
 }
 
+// Extends the range to what is nearer than nearly all of the photograph's sparse points, as a vehicle
+// before a facade: few points are on it, and its sources have most of them. `depths` has room for the
+// points of all sources.
+static void widen_range(const struct densify_photos *photos, const struct orl_view *view,
+                        double *depths, struct densify_plan *plan)
+{
+    const struct orl_colmap_model *model = photos->model;
+    size_t count = 0;
+    for (int k = 0; k < plan->count; k++) {
+        const struct orl_colmap_image *source =
+            &model->images[photos->images[plan->sources[k].photo]];
+        for (size_t i = 0; i < source->point_count; i++) {
+            double pixel[2];
+            count += orl_view_project(view, model->points[source->points[i]].position, pixel,
+                                      &depths[count]) &&
+                     pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < view->camera.width &&
+                     pixel[1] < view->camera.height;
+        }
+    }
+    if (count <= OUTLIERS)
+        return;
+    qsort(depths, count, sizeof *depths, orl_order_doubles);
+    plan->w_max = fmax(plan->w_max, 1.0 / (NEAR_SHARE * depths[OUTLIERS]));
+}
+
 struct plan_scratch {
     struct point_views seen_by;
     struct tally *tallies;
     double (*centres)[3];
-    double *depths;
+    double *depths; // of the points of a photograph, or of its sources
 };
 
 static void make_plan(const struct densify_photos *photos, size_t ref, int sources,
@@ -194,8 +220,11 @@ static void make_plan(const struct densify_photos *photos, size_t ref, int sourc
             tally->shared++;
         }
     }
-    if (depth_range(scratch->depths, depth_count, plan))
-        choose_sources(scratch->tallies, photos->count, sources, plan);
+    if (!depth_count)
+        return;
+    depth_range(scratch->depths, depth_count, plan);
+    choose_sources(scratch->tallies, photos->count, sources, plan);
+    widen_range(photos, view, scratch->depths, plan);
 }
 
 enum orl_result orl_densify_plans_make(const struct orl_log *log,
@@ -211,7 +240,7 @@ enum orl_result orl_densify_plans_make(const struct orl_log *log,
         size_t points = photos->model->images[photos->images[i]].point_count;
         max_points = points > max_points ? points : max_points;
     }
-    scratch.depths = orl_array(log, max_points, sizeof *scratch.depths);
+    scratch.depths = orl_array(log, max_points, (size_t)sources * sizeof *scratch.depths);
     enum orl_result result = *plans && scratch.tallies && scratch.centres && scratch.depths
                                  ? point_views_init(log, photos, &scratch.seen_by) : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < photos->count; i++)
