@@ -12,7 +12,8 @@
 
 enum {
     LEVELS_MAX = 8,       // of a photograph's pyramid
-    POINTS_MAX = 100000,  // that are examined
+    POINTS = 30000,       // that are examined,
+    POINTS_OF_PHOTO = 100, // and more for each photograph
 };
 static const uint8_t CLIPPED = 254, BLACK = 0;
 static const float SPOILT_MAX = 0.02f; // greatest fraction of clipped pixels in a patch
@@ -220,9 +221,8 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
 {
     memset(samples, 0, sizeof *samples);
     ORL_REQUIRE(log, points->count < UINT32_MAX && photo_count < UINT32_MAX);
-    struct taking t = {.log = log, .dir = dir, .points = points, .stride = 1};
-    if (points->count > POINTS_MAX)
-        t.stride = (points->count + POINTS_MAX - 1) / POINTS_MAX;
+    struct taking t = {.log = log, .dir = dir, .points = points,
+                       .stride = 1 + points->count / (POINTS + POINTS_OF_PHOTO * photo_count)};
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
         if (orl_progress_cancelled(progress))
