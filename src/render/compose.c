@@ -2,6 +2,7 @@
 
 #include "render/frame/method.h"
 #include "render/paint/paint.h"
+#include "render/paint/soft_layer.h"
 
 static bool fills(const struct frame *frame)
 {
@@ -19,7 +20,7 @@ static bool antialiases(const struct frame *frame)
     return frame->params->antialias == ORL_ANTIALIAS_ON && !frame->radiance;
 }
 
-static void compose(const struct frame *frame)
+static enum orl_result compose(const struct frame *frame)
 {
     const char *defines = frame->finishes ? "FINISHED" : frame->radiance ? "RADIANCE" : NULL;
     struct image_block block = {
@@ -39,6 +40,7 @@ static void compose(const struct frame *frame)
                                         GL_TEXTURE_UPDATE_BARRIER_BIT};
     orl_fill_groups(frame->surface.width, frame->surface.height, d.groups);
     orl_gpu_dispatch(frame->gpu, &d);
+    return ORL_OK;
 }
 
 static bool takes_median(const struct frame *frame)
@@ -47,7 +49,7 @@ static bool takes_median(const struct frame *frame)
 }
 
 // Filters the picture into states[0] and copies it back.
-static void median(const struct frame *frame)
+static enum orl_result median(const struct frame *frame)
 {
     bool holes = frame->params->median == ORL_MEDIAN_HOLES;
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height}};
@@ -61,6 +63,12 @@ static void median(const struct frame *frame)
     orl_gpu_dispatch(frame->gpu, &d);
     orl_tex_copy_layer(frame->paint->states[0], 0, frame->surface.width, frame->surface.height,
                        frame->picture, 0);
+    return ORL_OK;
+}
+
+static bool shows_soft(const struct frame *frame)
+{
+    return frame->soft != NULL;
 }
 
 const struct post_pass orl_post_passes[] = {
@@ -68,6 +76,7 @@ const struct post_pass orl_post_passes[] = {
     {"soften", softens, orl_fill_guesses},
     {"compose", NULL, compose},
     {"median", takes_median, median},
+    {"soft splats", shows_soft, orl_soft_layer_mix},
     {"specks", orl_edges_find_specks, orl_edges_remove_specks},
     {"antialias", antialiases, orl_edges_antialias},
     {0},

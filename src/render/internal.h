@@ -10,7 +10,7 @@
 struct post_pass {
     const char *name;
     bool (*applies)(const struct frame *frame); // NULL: always
-    void (*run)(const struct frame *frame);
+    enum orl_result (*run)(const struct frame *frame);
 };
 // Terminated by a NULL name.
 extern const struct post_pass orl_post_passes[];

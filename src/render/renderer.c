@@ -171,10 +171,11 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
         if (pass->applies && !pass->applies(frame))
             continue;
         orl_pass_begin(frame->gpu, pass->name);
-        pass->run(frame);
+        enum orl_result result = pass->run(frame);
         orl_pass_end(frame->gpu);
+        ORL_TRY(result);
     }
-    return frame->soft ? orl_soft_layer_mix(frame) : ORL_OK;
+    return ORL_OK;
 }
 
 static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool normals)

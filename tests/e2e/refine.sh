@@ -62,6 +62,7 @@ picture 0 0.3 soft.png
 cmp -s own.png soft.png && fail "soft splats change nothing"
 runs 0 "$oriel" bench ws --quick --size 64x48 --set soft=0.3 --seconds 0.1 --json bench.json
 grep -q '"soft splats"' bench.json || fail "their pass is not timed"
+jq -e '.sizes[0].passes_ms | keys_unsorted | index("soft splats") < index("specks")' bench.json >/dev/null || fail "specks go before soft splats come"
 
 # A damaged file is named.
 head -c 300 first.ply >ws/soft.ply

@@ -245,7 +245,7 @@ static void test_memory(void **state)
     orl_soft_finish(&model);
 }
 
-enum { SIDE = 32, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
+enum { SIDE = 32, UNPAINTED = 3, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
 
 static struct orl_tex *make_picture(GLenum format, int levels, bool array)
 {
@@ -289,17 +289,33 @@ static void test_keep(void **state)
     orl_tex_destroy(gpu, &slot);
 }
 
+// The fourth root of light goes with what is corrected, so that specks are found in it, but not where nothing was painted.
+static void check_painted(const uint8_t painted[SIDE * SIDE][2], const float picture[SIDE * SIDE][4])
+{
+    for (size_t i = 0; i < SIDE * SIDE; i++) {
+        const float *own = picture[i];
+        double light = pow((double)(0.299f * own[0] + 0.587f * own[1] + 0.114f * own[2]), 0.25);
+        assert_int_equal(painted[i][0], 50);
+        assert_float_equal(painted[i][1], i == UNPAINTED ? 0 : fmin(fmax(255 * light, 1), 255), 1);
+    }
+}
+
 // Corrects by `gathered` and mixes in `splats` of the splats.
 static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, float level,
                 float picture[SIDE * SIDE][4])
 {
     struct orl_tex *blended = make_picture(GL_RGBA32F, 6, false), *other = make_picture(GL_R16F, 1, false);
     struct orl_tex *differs = make_picture(GL_R16F, 6, false), *own = make_picture(GL_RGBA16F, 1, false);
+    struct orl_tex *specks = make_picture(GL_RG8, 1, false);
+    uint8_t painted[SIDE * SIDE][2];
     const struct soft_block block = {.view_size = {SIDE, SIDE}, .correct_share = 0.5f, .mix_share = splats,
                                      .mean_level = level};
     show_splats(blended, open, SIDE * SIDE);
     orl_tex_write(other, GL_RED, GL_FLOAT, gathered);
     orl_tex_write(own, GL_RGBA, GL_FLOAT, picture);
+    for (size_t i = 0; i < SIDE * SIDE; i++)
+        memcpy(painted[i], (uint8_t[]){50, i == UNPAINTED ? 0 : 100}, sizeof painted[i]);
+    orl_tex_write(specks, GL_RG, GL_UNSIGNED_BYTE, painted);
     struct orl_dispatch d = {
         .prog = orl_prog_get(gpu, "soft/compare.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
         .textures = {blended}, .images = {{other, 0, GL_READ_ONLY}, {differs, 0, GL_WRITE_ONLY}},
@@ -307,17 +323,21 @@ static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, fl
         .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
     orl_gpu_dispatch(gpu, &d);
     orl_tex_make_mipmaps(differs, 0);
-    d.prog = orl_prog_get(gpu, "soft/mix.comp", NULL, NULL);
+    d.prog = orl_prog_get(gpu, "soft/mix.comp", NULL, "SPECKS");
     d.textures[0] = differs;
     d.images[1] = (struct orl_image_binding){own, 0, GL_READ_WRITE};
     d.images[2] = (struct orl_image_binding){blended, 0, GL_READ_ONLY};
+    d.images[3] = (struct orl_image_binding){specks, 0, GL_READ_WRITE};
     d.barrier = GL_TEXTURE_UPDATE_BARRIER_BIT;
     orl_gpu_dispatch(gpu, &d);
     orl_tex_read(own, 0, GL_RGBA, GL_FLOAT, SIDE * SIDE * sizeof *picture, picture);
+    orl_tex_read(specks, 0, GL_RG, GL_UNSIGNED_BYTE, sizeof painted, painted);
+    check_painted(painted, picture);
     orl_tex_destroy(gpu, &blended);
     orl_tex_destroy(gpu, &other);
     orl_tex_destroy(gpu, &differs);
     orl_tex_destroy(gpu, &own);
+    orl_tex_destroy(gpu, &specks);
 }
 
 static double encoded(double linear)

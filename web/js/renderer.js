@@ -189,10 +189,10 @@ export class Renderer {
         const photos = pointsOnly ? [] : this.gather(camera, o, whole);
         this.used = photos.length;
         this.compose(pointsOnly);
-        if (whole && photos.length && !this.manifest.radiance)
-            this.removeSpecks();
         if (whole && this.soft && photos.length && photos.every(photo => photo.hasSoft))
             this.correct(camera, o, photos);
+        if (whole && photos.length && !this.manifest.radiance)
+            this.removeSpecks();
     }
 
     addSoft(data) { this.soft = new Soft(this.device, data, this.manifest.soft.pixel); }
@@ -333,7 +333,6 @@ export class Renderer {
         this.device.pass(this.programs.compose, f.composed,
                          {...colors, far: false, filled: f.fillColor.pushed[0].textures[0], guesses: f.guesses});
         this.finished = f.composed.textures[0];
-        this.corrected = false;
     }
 
     removeSpecks()
@@ -343,22 +342,20 @@ export class Renderer {
         this.finished = f.kept.textures[0];
     }
 
-    // By soft splats, as src/render/paint/soft_layer.c does. What is corrected is antialiased.
+    // By soft splats, as src/render/paint/soft_layer.c does.
     correct(camera, o, photos)
     {
         const f = this.frame, {blended, differs, mixed} = f.soft;
         const values = {mean_level: coarseLevel(camera, photos, this.shared.ORL_SOFT_COARSE),
                         correct_share: o.soft, mix_share: o.soft_mix,
                         blended: blended.textures[0], differs: differs.textures[0], source: f.painted.textures[1],
-                        composed: this.finished, depth: this.depth.textures[0],
-                        footprint: this.values.footprint};
+                        composed: this.finished};
         this.soft.draw(this.programs.soft(), blended, camera);
         this.device.makeLevels(values.blended);
         this.device.pass(this.programs.softCompare(), differs, values);
         this.device.makeLevels(values.differs);
         this.device.pass(this.programs.softMix(), mixed, values);
         this.finished = mixed.textures[0];
-        this.corrected = true;
     }
 
     // The last frame onto a place of its size: the canvas, or {fbo, x, y, width, height}, whose first row is the lowest.
@@ -371,7 +368,7 @@ export class Renderer {
                           depth: this.depth.textures[0], normals: f.surface.textures[1], source: f.painted.textures[1],
                           layer: layer === POINTS_LAYER ? 0 : layer, typical: this.values.typical,
                           exposure: this.exposure, tone: this.tone,
-                          footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance && !this.corrected});
+                          footprint: this.values.footprint, antialiases: whole && !this.manifest.radiance});
     }
 
     // A frame of its own as RGBA bytes, top row first.

@@ -54,7 +54,7 @@ bool orl_edges_find_specks(const struct frame *frame)
            frame->params->sampling == ORL_SAMPLING_BICUBIC;
 }
 
-void orl_edges_remove_specks(const struct frame *frame)
+enum orl_result orl_edges_remove_specks(const struct frame *frame)
 {
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height}};
     struct orl_dispatch d = {.params = &block, .params_size = sizeof block,
@@ -62,9 +62,10 @@ void orl_edges_remove_specks(const struct frame *frame)
                                         {frame->paint->edges.painted, 0, GL_READ_ONLY}}};
     list(frame, orl_prog_get(frame->gpu, "edges/specks_find.comp", NULL, NULL), &d);
     apply(frame, "edges/specks.comp", d);
+    return ORL_OK;
 }
 
-void orl_edges_antialias(const struct frame *frame)
+enum orl_result orl_edges_antialias(const struct frame *frame)
 {
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
                                 .footprint = (float)orl_frame_footprint(frame)};
@@ -72,4 +73,5 @@ void orl_edges_antialias(const struct frame *frame)
                              .images = {{frame->surface.depth, 0, GL_READ_ONLY}}};
     list(frame, orl_prog_get(frame->gpu, "edges/antialias_find.comp", NULL, NULL), &d);
     apply(frame, "edges/antialias.comp", d);
+    return ORL_OK;
 }

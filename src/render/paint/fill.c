@@ -113,7 +113,7 @@ void orl_fill_room(const struct frame *frame, struct orl_tex *room)
     apply(frame, "fill/fill_room.comp", room);
 }
 
-void orl_fill_color(const struct frame *frame)
+enum orl_result orl_fill_color(const struct frame *frame)
 {
     // Before a complete room only surfaces are left to fill, and the walls' colours are not theirs.
     bool surfaces = orl_frame_shows_room(frame) && !frame->params->paint->layers;
@@ -122,12 +122,14 @@ void orl_fill_color(const struct frame *frame)
     if (!frame->finishes)
         seed(frame, surfaces ? "SEED_SURFACES" : NULL, frame->picture, frame->surface.depth);
     spread(frame, NULL);
+    return ORL_OK;
 }
 
-void orl_fill_guesses(const struct frame *frame)
+enum orl_result orl_fill_guesses(const struct frame *frame)
 {
     struct orl_tex *guesses = frame->paint->fill.guesses;
     if (frame->radiance)
         run(frame, "fill/fill_seed.comp", "SEED_GUESSES", false, frame->picture, frame->paint->trusted, guesses);
     orl_tex_make_mipmaps(guesses, 0);
+    return ORL_OK;
 }

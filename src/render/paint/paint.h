@@ -77,10 +77,10 @@ void orl_fill_room(const struct frame *frame, struct orl_tex *room);
 // Spreads the blended colours over fill->level[0]. Painters that finish pixels have already written
 // sums over 2x2 pixels of (colour, 1) there. In radiance, clipped pixels first take the light
 // around them. Before a room only colours of surfaces count.
-void orl_fill_color(const struct frame *frame);
+enum orl_result orl_fill_color(const struct frame *frame) ORL_CHECK_RESULT;
 // Makes the mipmaps of fill->guesses. Painters that finish pixels have written the sums; for radiance they are
 // made here.
-void orl_fill_guesses(const struct frame *frame);
+enum orl_result orl_fill_guesses(const struct frame *frame) ORL_CHECK_RESULT;
 
 // --- guess.c: guessed depth moves to where photographs do not see past it ---
 
@@ -114,9 +114,9 @@ void orl_edges_finish(struct orl_gpu *gpu, struct edges *edges);
 // Whether the painter keeps `painted`, and specks go.
 bool orl_edges_find_specks(const struct frame *frame);
 // Gives specks the colour of what surrounds them.
-void orl_edges_remove_specks(const struct frame *frame);
+enum orl_result orl_edges_remove_specks(const struct frame *frame) ORL_CHECK_RESULT;
 // Averages the finished colours across depth discontinuities.
-void orl_edges_antialias(const struct frame *frame);
+enum orl_result orl_edges_antialias(const struct frame *frame) ORL_CHECK_RESULT;
 
 // --- paint.c ---
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "shared/constants.h"
 #include "soft/soft_ply.h"
@@ -128,26 +129,24 @@ enum orl_result orl_soft_layer_mix(const struct frame *frame)
 {
     struct soft_layer *layer = frame->soft;
     struct soft_block block;
-    orl_pass_begin(frame->gpu, "soft splats");
-    enum orl_result result = draw(frame->gpu, &layer->raster, frame->view, coarse_pixels_of_view(frame), &block);
+    ORL_TRY(draw(frame->gpu, &layer->raster, frame->view, coarse_pixels_of_view(frame), &block));
     block.correct_share = frame->params->soft;
     block.mix_share = frame->params->soft_mix;
-    if (result == ORL_OK) {
-        dispatch(frame, (struct orl_dispatch){
-            .prog = orl_prog_get(frame->gpu, "soft/compare.comp", NULL, NULL),
-            .params = &block, .params_size = sizeof block,
-            .textures = {layer->raster.blended},
-            .images = {{layer->gathered, 0, GL_READ_ONLY}, {layer->differs, 0, GL_WRITE_ONLY}},
-            .barrier = GL_TEXTURE_FETCH_BARRIER_BIT});
-        orl_tex_make_mipmaps(layer->differs, 0);
-        dispatch(frame, (struct orl_dispatch){
-            .prog = orl_prog_get(frame->gpu, "soft/mix.comp", NULL, NULL),
-            .params = &block, .params_size = sizeof block, .textures = {layer->differs},
-            .images = {[1] = {frame->picture, 0, GL_READ_WRITE}, {layer->raster.blended, 0, GL_READ_ONLY}},
-            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
-    }
-    orl_pass_end(frame->gpu);
-    return result;
+    dispatch(frame, (struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "soft/compare.comp", NULL, NULL),
+        .params = &block, .params_size = sizeof block,
+        .textures = {layer->raster.blended},
+        .images = {{layer->gathered, 0, GL_READ_ONLY}, {layer->differs, 0, GL_WRITE_ONLY}},
+        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT});
+    orl_tex_make_mipmaps(layer->differs, 0);
+    const char *specks = orl_edges_find_specks(frame) ? "SPECKS" : NULL;
+    dispatch(frame, (struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "soft/mix.comp", NULL, specks),
+        .params = &block, .params_size = sizeof block, .textures = {layer->differs},
+        .images = {[1] = {frame->picture, 0, GL_READ_WRITE}, {layer->raster.blended, 0, GL_READ_ONLY},
+                   {specks ? frame->paint->edges.painted : NULL, 0, GL_READ_WRITE}},
+        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
+    return ORL_OK;
 }
 
 void orl_soft_layer_finish(struct orl_gpu *gpu, struct soft_layer *layer)

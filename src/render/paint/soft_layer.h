@@ -21,7 +21,7 @@ bool orl_soft_layer_shows(const struct frame *frame);
 // progressive frame it is one photograph, and while others lack it, frame->soft becomes NULL.
 // ORL_ERR_NOT_FOUND: the scene has none (oriel refine).
 enum orl_result orl_soft_layer_ready(struct frame *frame) ORL_CHECK_RESULT;
-// Corrects the frame's finished picture.
+// Corrects the frame's picture.
 enum orl_result orl_soft_layer_mix(const struct frame *frame) ORL_CHECK_RESULT;
 // Keeps what the splats show in a photograph in a layer of a GL_R8 texture at least as large, but for its mip levels.
 enum orl_result orl_soft_layer_keep(struct orl_gpu *gpu, struct orl_soft_raster *raster, const struct orl_view *view,
