@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/vec3.h"
@@ -10,6 +11,8 @@
 enum {
     POINTS_MAX = 4096,
     PHOTOS_MAX = 64,
+    TRIES = 8,   // planes for each point
+    STEP = 1009, // from one point of a plane to the next, in the sample
 };
 
 // Largest standard deviation of the photographs' heights, as a fraction of their mean height.
@@ -22,7 +25,7 @@ static const double UPWARD_MIN = 0.85;
 // Least cosine between the plane's normal and what the photographs have above: a ceiling is no ground.
 static const double UP_MIN = -0.5;
 // As fractions of all points.
-static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.01;
+static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.005;
 // Smallest cosine of a point's normal with the plane's for the point to lie in it. The feet of facades lie near a
 // plane, and so do the lower edges of a thing on a turntable.
 static const double ALIGNED_COSINE = 0.7;
@@ -144,13 +147,31 @@ static double score(const struct sample *s, const double plane[4], double height
     return (counted - beneath) / s->count;
 }
 
-// The plane of point i.
-static bool candidate(const struct sample *s, int i, double plane[4])
+// A point that faces nearly as point i does, looked for from `start` on.
+static const double *other_point(const struct sample *s, int i, int start)
 {
-    for (int k = 0; k < 3; k++)
-        plane[k] = s->normal[i][k];
+    int k = start % s->count, end = k;
+    do {
+        if (orl_dot3(s->normal[i], s->normal[k]) > ALIGNED_COSINE)
+            return s->position[k];
+        k = (k + 1) % s->count;
+    } while (k != end);
+    return s->position[i];
+}
+
+// A plane through point i: its own, or that of two others, too, since a point's normal is off by degrees.
+static bool candidate(const struct sample *s, int i, int try, double plane[4])
+{
+    const double *at = s->position[i];
+    const double *a = other_point(s, i, i + STEP * (2 * try + 1)), *b = other_point(s, i, i + STEP * (2 * try + 2));
+    const double to_a[3] = {a[0] - at[0], a[1] - at[1], a[2] - at[2]};
+    const double to_b[3] = {b[0] - at[0], b[1] - at[1], b[2] - at[2]};
+    if (try == 0)
+        memcpy(plane, s->normal[i], sizeof s->normal[i]);
+    else
+        orl_cross3(to_a, to_b, plane);
     double length = orl_normalize3(plane);
-    plane[3] = -orl_dot3(plane, s->position[i]);
+    plane[3] = -orl_dot3(plane, at);
     return length > 0 && isfinite(length);
 }
 
@@ -163,9 +184,9 @@ enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scen
     if (result != ORL_OK || s.photo_count < 3)
         goto finish;
     double best = SCORE_MIN;
-    for (int i = 0; i < s.count; i++) {
+    for (int t = 0; t < TRIES * s.count; t++) {
         double plane[4], height;
-        if (!candidate(&s, i, plane) || (height = stood_height(&s, plane)) == 0)
+        if (!candidate(&s, t / TRIES, t % TRIES, plane) || (height = stood_height(&s, plane)) == 0)
             continue;
         double here = score(&s, plane, height);
         if (!(here > best)) // true also for NaN

@@ -87,6 +87,22 @@ static void finds_the_street(void **state)
     orl_points_finish(&s.scene.points);
 }
 
+// Gravel at a flat angle: the normal of each point is off by 20 degrees, to all sides.
+static void normals_may_be_off(void **state)
+{
+    (void)state;
+    struct street s;
+    build(&s, GROUND);
+    for (size_t i = 0; i < GROUND; i++) {
+        const double side = 6.2831853 * spread(i, 0.3247179572);
+        const float normal[3] = {(float)(0.342 * cos(side)), -0.94f, (float)(0.342 * sin(side))};
+        memcpy(s.scene.points.normal[i], normal, sizeof normal);
+    }
+    struct orl_ground ground = find(&s);
+    assert_found(&ground);
+    orl_points_finish(&s.scene.points);
+}
+
 static void held_out_photographs_have_no_say(void **state)
 {
     (void)state;
@@ -228,6 +244,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_the_street),
+        cmocka_unit_test(normals_may_be_off),
         cmocka_unit_test(held_out_photographs_have_no_say),
         cmocka_unit_test(there_may_be_none),
         cmocka_unit_test(few_points_are_no_ground),
