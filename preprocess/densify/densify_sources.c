@@ -9,7 +9,7 @@
 
 enum {
     SHARED_MIN = 3, // fewer shared points may be chance matches
-    OUTLIERS = 20,  // sightings of sparse points by all sources that may be wrong about near depth
+    OUTLIERS = 20,  // so many of the nearest points that the sources see may be wrong
 };
 static const double NEAR_SHARE = 0.6; // of the depth of the nearest points: where the range begins
 

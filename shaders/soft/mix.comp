@@ -22,7 +22,7 @@ void main()
     vec4 mixed = soft_mixed(imageLoad(picture, at), imageLoad(blended, at), more, mix_share);
     imageStore(picture, at, mixed);
 #ifdef SPECKS
-    vec4 own = imageLoad(painted, at);
+    vec4 own = imageLoad(painted, at); // g: 0 where nothing is painted
     if (own.g > 0.0)
         imageStore(painted, at, vec4(own.r, max(speck_light(mixed.rgb), 1.0 / 255.0), 0.0, 0.0));
 #endif

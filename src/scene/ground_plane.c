@@ -147,7 +147,7 @@ static double score(const struct sample *s, const double plane[4], double height
     return (counted - beneath) / s->count;
 }
 
-// A point that faces nearly as point i does, looked for from `start` on.
+// The first point from `start` on that faces nearly as point i does.
 static const double *other_point(const struct sample *s, int i, int start)
 {
     int k = start % s->count, end = k;
