@@ -127,6 +127,8 @@ sacre DATASETS/sacre-coeur/images --test-every 8
 bronze DATASETS/bronze-head/images --test-every 8 --masks DATASETS/bronze-head/masks
 dino DATASETS/dino-sparse-ring/images --test-every 8
 temple DATASETS/temple-sparse-ring/images --test-every 8
+horns DATASETS/llff-horns/images --test-every 8
+dtu DATASETS/dtu-scan24/images --test-every 8
 monument WORK/monument --quality draft --test-list 0005.jpg,0012.jpg,0020.jpg
 END
 }
@@ -137,7 +139,7 @@ page_scenes() {
         [ -e "$scenes/$name/scene.json" ] && continue
         [ "$name" != monument ] || [ -e "$work/monument" ] ||
             run "oriel synth monument --out WORK/monument --size 576x384 --count 24 --quiet" >&2
-        run "oriel prepare $arguments --out SCENES/NAME --max-size 768 --quiet" "$name" >&2
+        run "oriel prepare $arguments --out SCENES/NAME --max-size 512 --quiet" "$name" >&2
     done < <(scene_list)
     for name in $(scene_names); do
         jq --arg scene "$name" '. + {scene: $scene}' "$scenes/$name/scene.json"
@@ -145,9 +147,9 @@ page_scenes() {
     head_of "Scenes of the measurements" "$(list $(scene_names))"
     cat <<'END'
 
-Every figure of these pages is of one of these scenes, or of one prepared with the same arguments at the size that its
-page names. `measured.sh` prepares those that are missing; its function `scene_list` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others are
-photographs. *Held out* photographs take part in calibration alone. *Spread* is the robust standard deviation of what
+Figures of these pages are of these scenes, unless a page names others. `measured.sh` prepares those that are missing; its
+function `scene_list` has the arguments of `oriel prepare` for each. *monument* is synthetic (`oriel synth`), the others
+are photographs. *Held out* photographs take part in calibration alone. *Spread* is the robust standard deviation of what
 photographs show of one point, in stops, before and after their exposures are brought together.
 
 END
