@@ -25,7 +25,7 @@ picture() {
 
 for scene in "$@"; do
     rm -rf "$work/scene"
-    cp -r "$scene" "$work/scene"
+    cp -r "$scene/." "$work/scene" # of a link, what it points to
     { time "$oriel" refine "$work/scene" --size-divide "$divide" --quiet >/dev/null 2>"$work/log"; } 2>"$work/seconds" ||
         { cat "$work/log" >&2; exit 1; }
     jq -nc --arg name "$(basename "$scene")" --argjson seconds "$(awk '{ print $1 + $2 }' "$work/seconds")" \
