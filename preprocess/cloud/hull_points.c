@@ -23,19 +23,6 @@ static const double THROUGH = 1.5;  // voxels that a map must see behind the cen
 static const double APART = 0.5;    // voxels from any other point to a new one
 static const double NEAR_HULL = 0.1; // of the cube: nearer points outside are outliers
 
-static size_t voxel_count(const struct orl_hull *cube)
-{
-    return (size_t)cube->side * (size_t)cube->side * (size_t)cube->side;
-}
-
-static void voxel_centre(const struct orl_hull *cube, size_t index, double centre[3])
-{
-    size_t side = (size_t)cube->side;
-    const size_t at[3] = {index % side, index / side % side, index / (side * side)};
-    for (int k = 0; k < 3; k++)
-        centre[k] = cube->origin[k] + ((double)at[k] + 0.5) * cube->voxel;
-}
-
 // How many photographs may be wrong about a place.
 static int wrong_allowed(const struct orl_hull_points *hull)
 {
@@ -89,20 +76,6 @@ static enum orl_result mark_outside(const struct orl_log *log, const struct orl_
 
 // --- parts of the cube ---
 
-// The voxel that holds a position; false: it is beyond the cube.
-static bool find_voxel(const struct orl_hull *cube, const float position[3], size_t *index)
-{
-    size_t at[3];
-    for (int k = 0; k < 3; k++) {
-        double v = floor(((double)position[k] - cube->origin[k]) / cube->voxel);
-        if (!(v >= 0 && v < cube->side))
-            return false;
-        at[k] = (size_t)v;
-    }
-    *index = at[0] + (size_t)cube->side * (at[1] + (size_t)cube->side * at[2]);
-    return true;
-}
-
 // Marks a voxel that is inside by 2 and puts it on the stack.
 static void visit(uint8_t *inside, size_t index, uint32_t *stack, size_t *height)
 {
@@ -118,12 +91,12 @@ static enum orl_result keep_parts(const struct orl_log *log, const struct orl_po
 {
     const struct orl_hull *cube = &hull->cube;
     uint8_t *inside = hull->inside;
-    size_t side = (size_t)cube->side, count = voxel_count(cube), height = 0, index;
+    size_t side = (size_t)cube->side, count = orl_hull_voxels(cube), height = 0, index;
     const size_t step[3] = {1, side, side * side};
     uint32_t *stack = orl_array(log, count, sizeof *stack);
     ORL_TRY_MEMORY(stack);
     for (size_t i = 0; i < points->count; i++)
-        if (!hull->outside[i] && find_voxel(cube, points->position[i], &index))
+        if (!hull->outside[i] && orl_hull_find(cube, points->position[i], &index))
             visit(inside, index, stack, &height);
     while (height > 0) {
         index = stack[--height];
@@ -196,12 +169,12 @@ enum orl_result orl_hull_points_begin(const struct orl_log *log,
     hull->cube = (struct orl_hull){.side = side, .voxel = size / side};
     for (int k = 0; k < 3; k++)
         hull->cube.origin[k] = middle[k] - 0.5 * size;
-    hull->inside = orl_array(log, voxel_count(&hull->cube), 1);
-    hull->through = orl_array(log, voxel_count(&hull->cube), 1);
+    hull->inside = orl_array(log, orl_hull_voxels(&hull->cube), 1);
+    hull->through = orl_array(log, orl_hull_voxels(&hull->cube), 1);
     ORL_TRY_MEMORY(hull->inside && hull->through);
-    for (size_t i = 0; i < voxel_count(&hull->cube); i++) {
+    for (size_t i = 0; i < orl_hull_voxels(&hull->cube); i++) {
         double centre[3];
-        voxel_centre(&hull->cube, i, centre);
+        orl_hull_centre(&hull->cube, i, centre);
         hull->inside[i] = !is_outside(hull, centre);
     }
     return ORL_OK;
@@ -221,10 +194,10 @@ void orl_hull_points_see(struct orl_hull_points *hull, size_t which,
                          const struct orl_depth_map *map)
 {
     const struct orl_silhouette *s = &hull->silhouettes[which];
-    size_t count = hull->through ? voxel_count(&hull->cube) : 0;
+    size_t count = hull->through ? orl_hull_voxels(&hull->cube) : 0;
     for (size_t i = 0; i < count; i++) {
         double centre[3], pixel[2], depth;
-        voxel_centre(&hull->cube, i, centre);
+        orl_hull_centre(&hull->cube, i, centre);
         if (!hull->inside[i] || hull->through[i] == UINT8_MAX || excludes(s, centre) ||
             !orl_view_project(&map->view, centre, pixel, &depth) ||
             !(pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < map->depth.width &&
@@ -254,7 +227,7 @@ static enum orl_result make_surface(const struct orl_log *log, const struct orl_
                                     struct orl_mesh *mesh)
 {
     const struct orl_hull *cube = &hull->cube;
-    size_t side = (size_t)cube->side, count = voxel_count(cube);
+    size_t side = (size_t)cube->side, count = orl_hull_voxels(cube);
     float *field = orl_array(log, count, sizeof *field);
     ORL_TRY_MEMORY(field);
     for (size_t i = 0; i < count; i++)
@@ -379,10 +352,10 @@ enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_p
     *added = points->count;
     if (!hull->through)
         return ORL_OK;
-    for (size_t i = 0; i < voxel_count(&hull->cube); i++)
+    for (size_t i = 0; i < orl_hull_voxels(&hull->cube); i++)
         hull->inside[i] = hull->inside[i] && hull->through[i] <= wrong_allowed(hull);
     enum orl_result result = keep_parts(log, points, hull);
-    for (size_t i = 0; i < voxel_count(&hull->cube); i++)
+    for (size_t i = 0; i < orl_hull_voxels(&hull->cube); i++)
         any = any || hull->inside[i];
     if (result != ORL_OK || !any)
         return result;

@@ -8,6 +8,32 @@
 #include "core/memory.h"
 #include "scene/isosurface.h"
 
+size_t orl_hull_voxels(const struct orl_hull *cube)
+{
+    return (size_t)cube->side * (size_t)cube->side * (size_t)cube->side;
+}
+
+void orl_hull_centre(const struct orl_hull *cube, size_t index, double centre[3])
+{
+    size_t side = (size_t)cube->side;
+    const size_t at[3] = {index % side, index / side % side, index / (side * side)};
+    for (int k = 0; k < 3; k++)
+        centre[k] = cube->origin[k] + ((double)at[k] + 0.5) * cube->voxel;
+}
+
+bool orl_hull_find(const struct orl_hull *cube, const float position[3], size_t *index)
+{
+    size_t at[3];
+    for (int k = 0; k < 3; k++) {
+        double v = floor(((double)position[k] - cube->origin[k]) / cube->voxel);
+        if (!(v >= 0 && v < cube->side))
+            return false;
+        at[k] = (size_t)v;
+    }
+    *index = at[0] + (size_t)cube->side * (at[1] + (size_t)cube->side * at[2]);
+    return true;
+}
+
 void orl_cones_finish(struct cones *cones)
 {
     for (size_t i = 0; i < cones->count; i++)
@@ -56,20 +82,17 @@ static float value_at(const struct cones *cones, const double world[3], double m
     return (float)fmin(fmax(farthest, -most), most);
 }
 
-enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *cones, int side,
+enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *cones,
                                 float **field)
 {
-    double voxel = cones->bounds.size / side;
-    float *at = *field = orl_array(log, (size_t)side * (size_t)side * (size_t)side, sizeof *at);
-    ORL_TRY_MEMORY(at);
-    for (int z = 0; z < side; z++)
-        for (int y = 0; y < side; y++)
-            for (int x = 0; x < side; x++) {
-                const double centre[3] = {cones->bounds.origin[0] + (x + 0.5) * voxel,
-                                          cones->bounds.origin[1] + (y + 0.5) * voxel,
-                                          cones->bounds.origin[2] + (z + 0.5) * voxel};
-                *at++ = value_at(cones, centre, ORL_CONES_MAX * voxel);
-            }
+    size_t count = orl_hull_voxels(&cones->cube);
+    *field = orl_array(log, count, sizeof **field);
+    ORL_TRY_MEMORY(*field);
+    for (size_t i = 0; i < count; i++) {
+        double centre[3];
+        orl_hull_centre(&cones->cube, i, centre);
+        (*field)[i] = value_at(cones, centre, ORL_CONES_MAX * cones->cube.voxel);
+    }
     return ORL_OK;
 }
 
@@ -131,21 +154,19 @@ static double find_reach(const struct orl_silhouette *silhouettes, const struct 
     return most;
 }
 
-// Finds the hull's bounding box on a coarse grid of the cube of this half edge around the centre. The
-// bounds become the box with a margin of one voxel; *cut: the hull reaches the cube's faces.
-static enum orl_result try_bounds(const struct orl_log *log, const double centre[3], double reach,
-                                  struct cones *cones, bool *cut)
+// Finds the hull's bounding box on a coarse grid of the cube of this half edge around the centre. The cones' cube
+// of side^3 becomes the box with a margin of one voxel of that grid; it is endless if the hull reaches the grid's faces.
+static enum orl_result try_bounds(const struct orl_log *log, const double centre[3], double reach, int side,
+                                  struct cones *cones)
 {
     enum { COARSE = 48 };
-    struct orl_hull_bounds *bounds = &cones->bounds;
-    const double start[3] = {centre[0] - reach, centre[1] - reach, centre[2] - reach};
     double voxel = 2 * reach / COARSE;
+    const struct orl_hull start = {COARSE, {centre[0] - reach, centre[1] - reach, centre[2] - reach}, voxel, false};
     double room = sqrt(1.5) * voxel; // half a voxel's diagonal, seen in a picture's square
     int low[3] = {COARSE, COARSE, COARSE}, high[3] = {-1, -1, -1}, most = 0;
     float *field;
-    memcpy(bounds->origin, start, sizeof start);
-    bounds->size = 2 * reach;
-    ORL_TRY(orl_cones_field(log, cones, COARSE, &field));
+    cones->cube = start;
+    ORL_TRY(orl_cones_field(log, cones, &field));
     for (int i = 0; i < COARSE * COARSE * COARSE; i++) {
         const int here[3] = {i % COARSE, i / COARSE % COARSE, i / (COARSE * COARSE)};
         for (int k = 0; (double)field[i] <= room && k < 3; k++) {
@@ -157,29 +178,29 @@ static enum orl_result try_bounds(const struct orl_log *log, const double centre
     if (high[0] < 0)
         return orl_fail(log, ORL_ERR_DATA, "the silhouettes have no place in common: are "
                         "cameras and masks of the same time step?");
-    *cut = false;
     for (int k = 0; k < 3; k++) {
-        *cut = *cut || low[k] == 0 || high[k] == COARSE - 1;
+        cones->cube.endless = cones->cube.endless || low[k] == 0 || high[k] == COARSE - 1;
         most = high[k] - low[k] + 3 > most ? high[k] - low[k] + 3 : most;
     }
-    bounds->size = most * voxel;
+    cones->cube.side = side;
+    cones->cube.voxel = most * voxel / side;
     for (int k = 0; k < 3; k++)
-        bounds->origin[k] = start[k] + 0.5 * (low[k] + high[k] + 1 - most) * voxel;
+        cones->cube.origin[k] += 0.5 * (low[k] + high[k] + 1 - most) * voxel;
     return ORL_OK;
 }
 
 // Tries larger cubes while the hull reaches the cube's faces. If it does not end, specks at the
 // borders of silhouettes are more likely than a large subject, and the first cube is the result.
-static enum orl_result find_bounds(const struct orl_log *log, const double centre[3], double reach,
+static enum orl_result find_bounds(const struct orl_log *log, const double centre[3], double reach, int side,
                                    struct cones *cones)
 {
     enum { ROUNDS = 4 };
-    bool cut = true;
-    enum orl_result result = ORL_OK;
-    for (int round = 0; result == ORL_OK && cut && round < ROUNDS; round++)
-        result = try_bounds(log, centre, ldexp(reach, round), cones, &cut);
-    cones->bounds.endless = cut;
-    return result == ORL_OK && cut ? try_bounds(log, centre, reach, cones, &cut) : result;
+    for (int round = 0; round < ROUNDS; round++) {
+        ORL_TRY(try_bounds(log, centre, ldexp(reach, round), side, cones));
+        if (!cones->cube.endless)
+            return ORL_OK;
+    }
+    return try_bounds(log, centre, reach, side, cones);
 }
 
 void orl_hull_warn_endless(const struct orl_log *log)
@@ -221,7 +242,7 @@ enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhou
 }
 
 enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                               size_t count, struct cones *cones)
+                               size_t count, int side, struct cones *cones)
 {
     double centre[3], reach;
     memset(cones, 0, sizeof *cones);
@@ -232,7 +253,7 @@ enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silho
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < count; i++)
         result = orl_cone_make(log, &silhouettes[i], &cones->all[i]);
-    ORL_THEN(result, find_bounds(log, centre, reach, cones));
+    ORL_THEN(result, find_bounds(log, centre, reach, side, cones));
     if (result != ORL_OK)
         orl_cones_finish(cones);
     return result;
@@ -245,16 +266,14 @@ enum orl_result orl_cones_mesh(const struct orl_log *log, const struct orl_silho
     struct cones cones;
     float *field = NULL;
     memset(mesh, 0, sizeof *mesh);
-    ORL_TRY(orl_cones_make(log, silhouettes, count, &cones));
-    if (cones.bounds.endless && said) {
+    ORL_TRY(orl_cones_make(log, silhouettes, count, side, &cones));
+    if (cones.cube.endless && said) {
         if (!*said)
             orl_hull_warn_endless(log);
         *said = true;
     }
-    struct orl_hull cube = {.side = side, .voxel = cones.bounds.size / side};
-    memcpy(cube.origin, cones.bounds.origin, sizeof cube.origin);
-    enum orl_result result = orl_cones_field(log, &cones, side, &field);
-    ORL_THEN(result, orl_hull_field_mesh(log, &cube, field, triangles, mesh));
+    enum orl_result result = orl_cones_field(log, &cones, &field);
+    ORL_THEN(result, orl_hull_field_mesh(log, &cones.cube, field, triangles, mesh));
     free(field);
     orl_cones_finish(&cones);
     return result;

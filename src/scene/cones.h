@@ -18,9 +18,17 @@ struct orl_silhouette {
 struct orl_hull {
     int side;
     double origin[3], voxel; // scene units
+    bool endless; // silhouettes leave room without end, and the cube cuts the hull off
 };
 
 enum { ORL_HULL_SIDE_MIN = 2, ORL_HULL_SIDE_MAX = 1024 };
+
+size_t orl_hull_voxels(const struct orl_hull *cube);
+void orl_hull_centre(const struct orl_hull *cube, size_t index, double centre[3]);
+// The voxel that holds a position; false: it is beyond the cube.
+bool orl_hull_find(const struct orl_hull *cube, const float position[3], size_t *index);
+// Warns about a hull that is endless.
+void orl_hull_warn_endless(const struct orl_log *log);
 
 // Makes the surface, with normals, where a field is 0 that is negative inside: it has a value at each
 // voxel's centre of the cube, x fastest. At most about `triangles` (0: unlimited).
@@ -40,29 +48,21 @@ struct cone {
     bool open;                 // the subject leaves the picture
 };
 
-// A cube that contains the visual hull with a small margin.
-struct orl_hull_bounds {
-    double origin[3], size; // lowest corner and edge
-    bool endless; // the silhouettes leave room without end, and the cube cuts the hull off
-};
-// Warns about bounds that are endless.
-void orl_hull_warn_endless(const struct orl_log *log);
-
 struct cones {
     struct cone *all; // owned
     size_t count;
-    struct orl_hull_bounds bounds; // of what all of them have in common
+    struct orl_hull cube; // contains what all of them have in common, with a small margin
 };
 
 enum orl_result orl_cone_make(const struct orl_log *log, const struct orl_silhouette *silhouette,
                               struct cone *cone) ORL_CHECK_RESULT;
-// ORL_ERR_DATA: a silhouette is empty, or the silhouettes have no place in common.
+// With a cube of side^3 voxels. ORL_ERR_DATA: a silhouette is empty, or the silhouettes have no place in common.
 enum orl_result orl_cones_make(const struct orl_log *log, const struct orl_silhouette *silhouettes,
-                               size_t count, struct cones *cones) ORL_CHECK_RESULT;
+                               size_t count, int side, struct cones *cones) ORL_CHECK_RESULT;
 void orl_cones_finish(struct cones *cones);
-// Intersects all cones in their bounds, a cube of side^3 voxels, x fastest: at each voxel's centre the signed
-// distance to the nearest cone, scene units, negative inside. The caller frees *field.
-enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *cones, int side,
+// Intersects all cones: at each voxel's centre of their cube the signed distance to the nearest cone, scene units,
+// negative inside. The caller frees *field.
+enum orl_result orl_cones_field(const struct orl_log *log, const struct cones *cones,
                                 float **field) ORL_CHECK_RESULT;
 // Makes the hull's surface, with normals, of at most about `triangles` (0: unlimited). *said: that
 // the hull has no end has been said, which is said once; NULL: it is not said.

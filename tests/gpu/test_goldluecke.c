@@ -85,8 +85,8 @@ static void the_hull_is_the_and_of_partial_hulls(void **state)
     float *field;
     setup_balls(&scene, centre, 1);
     assert_int_equal(orl_voxels_carve(gpu, scene.all, RING, 32, &voxels), ORL_OK);
-    assert_int_equal(orl_cones_make(NULL, scene.all, RING, &cones), ORL_OK);
-    assert_int_equal(orl_cones_field(NULL, &cones, 32, &field), ORL_OK);
+    assert_int_equal(orl_cones_make(NULL, scene.all, RING, 32, &cones), ORL_OK);
+    assert_int_equal(orl_cones_field(NULL, &cones, &field), ORL_OK);
     int inside = 0;
     for (int i = 0; i < 32 * 32 * 32; i++) {
         inside += voxels.field[i] <= 0;

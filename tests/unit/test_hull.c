@@ -84,12 +84,12 @@ static void holds_the_sphere(void **state)
 {
     struct scene *scene = *state;
     struct cones cones;
-    assert_int_equal(orl_cones_make(NULL, scene->all, CAMERAS, &cones), ORL_OK);
+    assert_int_equal(orl_cones_make(NULL, scene->all, CAMERAS, SIDE, &cones), ORL_OK);
     for (int k = 0; k < 3; k++) {
-        assert_true(cones.bounds.origin[k] < CENTRE[k] - RADIUS);
-        assert_true(cones.bounds.origin[k] + cones.bounds.size > CENTRE[k] + RADIUS);
+        assert_true(cones.cube.origin[k] < CENTRE[k] - RADIUS);
+        assert_true(cones.cube.origin[k] + SIDE * cones.cube.voxel > CENTRE[k] + RADIUS);
     }
-    assert_true(cones.bounds.size < 3 * RADIUS && !cones.bounds.endless);
+    assert_true(SIDE * cones.cube.voxel < 3 * RADIUS && !cones.cube.endless);
     orl_cones_finish(&cones);
 }
 
@@ -133,21 +133,20 @@ static void leaves_out_what_is_behind_a_camera(void **state)
     enum { VOXELS = 8 };
     struct scene *scene = *state;
     struct cone cone;
-    struct cones cones = {.all = &cone, .count = 1};
+    struct cones cones = {.all = &cone, .count = 1, .cube = {.side = VOXELS, .voxel = 2.0 / VOXELS}};
     float *field;
     double eye[3];
     int behind = 0;
     assert_int_equal(orl_cone_make(NULL, scene->all, &cone), ORL_OK);
     orl_pose_centre(&scene->all[0].view.cam_from_world, eye);
-    cones.bounds.size = 2;
     for (int k = 0; k < 3; k++)
-        cones.bounds.origin[k] = eye[k] - 1;
-    assert_int_equal(orl_cones_field(NULL, &cones, VOXELS, &field), ORL_OK);
+        cones.cube.origin[k] = eye[k] - 1;
+    assert_int_equal(orl_cones_field(NULL, &cones, &field), ORL_OK);
     for (int i = 0; i < VOXELS * VOXELS * VOXELS; i++) {
         const int at[3] = {i % VOXELS, i / VOXELS % VOXELS, i / VOXELS / VOXELS};
         double place[3], local[3];
         for (int k = 0; k < 3; k++)
-            place[k] = cones.bounds.origin[k] + (at[k] + 0.5) * cones.bounds.size / VOXELS;
+            place[k] = cones.cube.origin[k] + (at[k] + 0.5) * cones.cube.voxel;
         orl_pose_apply(&scene->all[0].view.cam_from_world, place, local);
         behind += local[2] < 0;
         assert_true(local[2] >= 0 || field[i] > 0);
@@ -182,11 +181,11 @@ static void makes_a_mesh(void **state)
 static bool keeps_any(const struct orl_silhouette *silhouette)
 {
     struct cone cone;
-    const struct cones cones = {&cone, 1, {{-3.4, -0.2, 4}, 0.4, false}}; // left of the border
+    const struct cones cones = {&cone, 1, {2, {-3.4, -0.2, 4}, 0.2, false}}; // left of the border
     float *field;
     bool any = false;
     assert_int_equal(orl_cone_make(NULL, silhouette, &cone), ORL_OK);
-    assert_int_equal(orl_cones_field(NULL, &cones, 2, &field), ORL_OK);
+    assert_int_equal(orl_cones_field(NULL, &cones, &field), ORL_OK);
     for (int i = 0; i < 8; i++)
         any = any || field[i] <= 0;
     orl_image_finish(&cone.distance);

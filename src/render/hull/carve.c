@@ -5,18 +5,17 @@
 #include "render/hull/voxels.h"
 #include "shared/hull_blocks.h"
 
-static struct carve_block carve_params(const struct cone *cone, const double cube[3], double voxel,
-                                       int side)
+static struct carve_block carve_params(const struct cone *cone, const struct orl_hull *cube)
 {
     const struct orl_view *view = &cone->view;
     double origin[3];
-    struct carve_block block = {.size = {view->camera.width, view->camera.height}, .side = side,
-                                .open = cone->open, .most = (float)(ORL_CONES_MAX * voxel)};
+    struct carve_block block = {.size = {view->camera.width, view->camera.height}, .side = cube->side,
+                                .open = cone->open, .most = (float)(ORL_CONES_MAX * cube->voxel)};
     orl_set_focal(&view->camera, block.focal);
-    orl_pose_apply(&view->cam_from_world, cube, origin);
+    orl_pose_apply(&view->cam_from_world, cube->origin, origin);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
-            block.camera_from_voxels[i][j] = (float)(view->cam_from_world.r[i][j] * voxel);
+            block.camera_from_voxels[i][j] = (float)(view->cam_from_world.r[i][j] * cube->voxel);
         block.camera_from_voxels[i][3] = (float)origin[i];
     }
     return block;
@@ -43,21 +42,19 @@ static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
     return ORL_OK;
 }
 
-enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones, int side,
+enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones,
                                 struct orl_buf **field)
 {
     const float unlimited = -INFINITY; // no silhouette has limited a voxel yet
-    size_t voxels = (size_t)side * (size_t)side * (size_t)side;
+    size_t voxels = orl_hull_voxels(&cones->cube);
     uint32_t word;
     *field = NULL;
     ORL_TRY(orl_buf_create(gpu, ORL_OWNER_FRAME, "voxels", voxels * sizeof(float), NULL, field));
     memcpy(&word, &unlimited, sizeof word);
     orl_buf_fill(*field, word);
-    double voxel = cones->bounds.size / side;
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < cones->count; i++) {
-        struct carve_block block =
-            carve_params(&cones->all[i], cones->bounds.origin, voxel, side);
+        struct carve_block block = carve_params(&cones->all[i], &cones->cube);
         result = carve_one(gpu, &cones->all[i], &block, voxels, *field);
     }
     if (result != ORL_OK)

@@ -55,7 +55,7 @@ static enum orl_result read_silhouettes(struct prefetch *a)
         result = orl_photo_mask_read(NULL, &a->scene, photo, &a->mask[photo]);
         all[i] = (struct orl_silhouette){a->scene.photos[photo].view, a->mask[photo]};
     }
-    ORL_THEN(result, orl_cones_make(NULL, all, a->masked_count, &a->cones));
+    ORL_THEN(result, orl_cones_make(NULL, all, a->masked_count, a->side, &a->cones));
     free(all);
     return result;
 }
@@ -221,7 +221,7 @@ enum orl_result orl_prefetch_carve(struct orl_gpu *gpu, struct prefetch *a)
 {
     if (step_of(a) != STEP_CARVE)
         return ORL_OK;
-    enum orl_result result = orl_cones_carve(gpu, &a->cones, a->side, &a->field);
+    enum orl_result result = orl_cones_carve(gpu, &a->cones, &a->field);
     set_step(a, result == ORL_OK ? STEP_COLLECT : STEP_NONE);
     return result;
 }
@@ -230,8 +230,7 @@ enum orl_result orl_prefetch_collect(struct orl_gpu *gpu, struct prefetch *a)
 {
     if (step_of(a) != STEP_COLLECT)
         return ORL_OK;
-    enum orl_result result =
-        orl_voxels_read(orl_gpu_log(gpu), &a->cones, a->side, a->field, &a->voxels);
+    enum orl_result result = orl_voxels_read(orl_gpu_log(gpu), &a->cones, a->field, &a->voxels);
     orl_buf_destroy(gpu, &a->field);
     set_step(a, result == ORL_OK ? STEP_LIST : STEP_NONE);
     return result;

@@ -48,11 +48,6 @@ void orl_voxels_finish(struct voxels *voxels)
     memset(voxels, 0, sizeof *voxels);
 }
 
-static size_t cells(int side)
-{
-    return (size_t)side * (size_t)side * (size_t)side;
-}
-
 // --- the surface ---
 
 static bool stays(const struct voxels *v, size_t x, size_t y, size_t z)
@@ -89,15 +84,13 @@ enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *v)
 
 // --- from silhouettes ---
 
-enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,
+enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones,
                                 const struct orl_buf *field, struct voxels *voxels)
 {
-    *voxels = (struct voxels){.endless = cones->bounds.endless,
-                              .cube = {.side = side, .voxel = cones->bounds.size / side}};
-    memcpy(voxels->cube.origin, cones->bounds.origin, sizeof voxels->cube.origin);
-    voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
+    size_t count = orl_hull_voxels(&cones->cube);
+    *voxels = (struct voxels){.cube = cones->cube, .field = orl_array(log, count, sizeof *voxels->field)};
     ORL_TRY_MEMORY(voxels->field);
-    orl_buf_read(field, cells(side) * sizeof *voxels->field, voxels->field);
+    orl_buf_read(field, count * sizeof *voxels->field, voxels->field);
     return ORL_OK;
 }
 
@@ -108,9 +101,9 @@ enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouett
     struct cones cones;
     struct orl_buf *field = NULL;
     memset(voxels, 0, sizeof *voxels);
-    enum orl_result result = orl_cones_make(log, silhouettes, count, &cones);
-    ORL_THEN(result, orl_cones_carve(gpu, &cones, side, &field));
-    ORL_THEN(result, orl_voxels_read(log, &cones, side, field, voxels));
+    enum orl_result result = orl_cones_make(log, silhouettes, count, side, &cones);
+    ORL_THEN(result, orl_cones_carve(gpu, &cones, &field));
+    ORL_THEN(result, orl_voxels_read(log, &cones, field, voxels));
     ORL_THEN(result, orl_voxels_list(log, voxels));
     orl_buf_destroy(gpu, &field);
     orl_cones_finish(&cones);
@@ -121,9 +114,9 @@ enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouett
 
 void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said)
 {
-    if (voxels->endless && !*said)
+    if (voxels->cube.endless && !*said)
         orl_hull_warn_endless(log);
-    *said = *said || voxels->endless;
+    *said = *said || voxels->cube.endless;
 }
 
 // --- from points ---
@@ -148,25 +141,17 @@ enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_poin
 {
     *voxels = (struct voxels){.cube.side = side};
     enum orl_result result = bound_points(log, points, &voxels->cube);
-    double voxel = voxels->cube.voxel;
+    size_t count = orl_hull_voxels(&voxels->cube), index;
+    float voxel = (float)voxels->cube.voxel;
     if (result == ORL_OK)
-        voxels->field = orl_array(log, cells(side), sizeof *voxels->field);
+        voxels->field = orl_array(log, count, sizeof *voxels->field);
     if (result == ORL_OK && !voxels->field)
         result = ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < cells(side); i++)
-        voxels->field[i] = (float)voxel;
-    for (size_t i = 0; result == ORL_OK && i < points->count; i++) {
-        double at[3];
-        bool inside = true;
-        for (int k = 0; k < 3; k++) {
-            at[k] = floor(((double)points->position[i][k] - voxels->cube.origin[k]) / voxel);
-            inside = inside && at[k] >= 0 && at[k] < side;
-        }
-        if (inside)
-            voxels->field[(size_t)at[0] +
-                          (size_t)side * ((size_t)at[1] + (size_t)side * (size_t)at[2])] =
-                (float)-voxel;
-    }
+    for (size_t i = 0; result == ORL_OK && i < count; i++)
+        voxels->field[i] = voxel;
+    for (size_t i = 0; result == ORL_OK && i < points->count; i++)
+        if (orl_hull_find(&voxels->cube, points->position[i], &index))
+            voxels->field[index] = -voxel;
     ORL_THEN(result, orl_voxels_list(log, voxels));
     if (result != ORL_OK)
         orl_voxels_finish(voxels);

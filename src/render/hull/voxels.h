@@ -8,7 +8,6 @@
 
 struct voxels {
     struct orl_hull cube;
-    bool endless;         // struct orl_hull_bounds
     // At each voxel's centre, x fastest, scene units: of a hull the signed distance to the nearest
     // cone of a silhouette, negative inside; of points -voxel where there are some, else voxel.
     float *field;         // side^3; owned
@@ -39,11 +38,11 @@ void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, boo
 
 // Asks the device for the intersection of all cones, as orl_cones_field. The caller destroys *field.
 // Does not wait for the device.
-enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones, int side,
+enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones,
                                 struct orl_buf **field) ORL_CHECK_RESULT;
 
-// Reads what orl_cones_carve gave for a cube of side^3. The surface is not listed yet.
-enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones, int side,
+// Reads what orl_cones_carve gave. The surface is not listed yet.
+enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *cones,
                                 const struct orl_buf *field, struct voxels *voxels) ORL_CHECK_RESULT;
 // Lists the voxels that stay and touch one that does not: work of the processor alone.
 enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *voxels) ORL_CHECK_RESULT;
