@@ -68,22 +68,6 @@ static void print_runs(const struct orl_bench *bench)
     }
 }
 
-static void print_rasters(const struct orl_bench *bench)
-{
-    bool any = false;
-    for (size_t i = 0; i < bench->run_count; i++) {
-        const struct orl_bench_run *r = &bench->runs[i];
-        double splat_ms = orl_bench_splat_ms(r);
-        if (!r->gl_points_frames)
-            continue;
-        if (!any)
-            printf("\n%-12s %12s %12s %8s\n", "points", "splat ms", "GL_POINTS ms", "ratio");
-        any = true;
-        printf("%-12zu %12.2f %12.2f %8.1f\n", r->points, splat_ms, r->gl_points_ms,
-               splat_ms > 0 ? r->gl_points_ms / splat_ms : 0.0);
-    }
-}
-
 static void print_tables(const struct orl_bench *bench)
 {
     printf("scene        %s\npoints       %zu\nphotographs  %zu of up to %dx%d\n"
@@ -94,7 +78,6 @@ static void print_tables(const struct orl_bench *bench)
         printf("time steps   %zu, another one in each frame\n", bench->scene->frame_count);
     print_memory(bench);
     print_runs(bench);
-    print_rasters(bench);
 }
 
 // --- the command ---

@@ -32,15 +32,6 @@ void orl_bench_run_print(const struct orl_bench_run *run, char text[32])
         snprintf(text, 32, "%zu", run->kind == ORL_BENCH_POINTS ? run->points : run->photographs);
 }
 
-double orl_bench_splat_ms(const struct orl_bench_run *run)
-{
-    double sum = 0;
-    for (size_t i = 0; i < run->timing.pass_count; i++)
-        if (strncmp(run->timing.passes[i].name, "splat", 5) == 0)
-            sum += run->timing.passes[i].ms;
-    return sum;
-}
-
 // --- the list ---
 
 // Adds the configuration once for each method.
@@ -200,8 +191,6 @@ static enum orl_result measure_runs(struct bench_job *job, size_t first, size_t 
     if (result == ORL_OK && first == 0 && job->params->trace)
         result = orl_bench_trace(job, renderer, &job->params->choices->items[0].params, run);
     orl_renderer_destroy(&renderer);
-    if (result == ORL_OK && run->kind == ORL_BENCH_POINTS)
-        result = orl_bench_measure_raster(job, run);
     job->scene = NULL;
     orl_points_finish(&points);
     free(use);
@@ -305,20 +294,6 @@ static json_t *runs_json(const struct orl_bench *bench, enum orl_bench_kind kind
     return array;
 }
 
-static json_t *rasters_json(const struct orl_bench *bench)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < bench->run_count; i++) {
-        const struct orl_bench_run *r = &bench->runs[i];
-        if (r->gl_points_frames)
-            json_array_append_new(array, json_pack(
-                "{s:I, s:[i,i], s:I, s:f, s:f}", "points", (json_int_t)r->points, "size",
-                r->size.width, r->size.height, "frames", (json_int_t)r->gl_points_frames,
-                "splat_ms", orl_bench_splat_ms(r), "gl_points_ms", r->gl_points_ms));
-    }
-    return array;
-}
-
 static json_t *memory_json(const struct orl_bench *bench)
 {
     json_t *array = json_array();
@@ -333,7 +308,7 @@ static json_t *memory_json(const struct orl_bench *bench)
 json_t *orl_bench_report(const struct orl_bench *bench)
 {
     return json_pack(
-        "{s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        "{s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:[i,i], s:I, s:o, s:o, s:o, s:o, s:o}", "scene",
         orl_json_string(bench->scene->dir), "device", bench->device, "driver", bench->driver, "software",
         bench->software, "points", (json_int_t)orl_scene_point_count(bench->scene),
         "time_steps", (json_int_t)bench->scene->frame_count, "photographs", (json_int_t)bench->photographs,
@@ -341,6 +316,5 @@ json_t *orl_bench_report(const struct orl_bench *bench)
         "host_peak_bytes", (json_int_t)bench->host_peak_bytes, "memory", memory_json(bench),
         "sizes", runs_json(bench, ORL_BENCH_SIZES), "by_photographs",
         runs_json(bench, ORL_BENCH_PHOTOGRAPHS), "by_points", runs_json(bench, ORL_BENCH_POINTS),
-        "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION), "gl_points",
-        rasters_json(bench));
+        "by_resolution", runs_json(bench, ORL_BENCH_RESOLUTION));
 }

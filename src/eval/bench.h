@@ -33,15 +33,9 @@ struct orl_bench_run {
     size_t uploaded_bytes;      // photographs and masks that went to the device
     double psnr_db;             // ORL_BENCH_RESOLUTION, first method: PSNR against full size; else
                                 // 0
-    // ORL_BENCH_POINTS, first method: the same points drawn by the graphics pipeline, as GL_POINTS
-    // with depth test; no frames: of other rows.
-    size_t gl_points_frames;
-    double gl_points_ms;
 };
 // What the run's kind varies, such as "512x512".
 void orl_bench_run_print(const struct orl_bench_run *run, char text[32]);
-// Time of all splatting passes of a frame.
-double orl_bench_splat_ms(const struct orl_bench_run *run);
 
 // Growth is measured at the first size.
 #define ORL_BENCH_OPTIONS(ROW) \
@@ -50,7 +44,7 @@ double orl_bench_splat_ms(const struct orl_bench_run *run);
         "numbers of points to try; beyond the scene's, points are split; default: parts of them, and a million") \
     ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "for each median, about") \
     ROW(frames, "frames", INT(100, ORL_TIMING_FRAMES_MIN, 100000, "N"), "for each median, at most") \
-    ROW(quick, "quick", FLAG, "sizes only: no growth, no GL_POINTS") \
+    ROW(quick, "quick", FLAG, "sizes only: no growth") \
     ROW(trace, "trace", TEXT("FILE"), "write a few frames for chrome://tracing or ui.perfetto.dev") \
     ROW(images, "images", TEXT("DIR"), "write pictures at each resolution of the photographs") \
     ROW(textures, "textures", CHOICE(orl_textures, ORL_TEXTURES, ORL_TEXTURES_AUTO, "KIND"), \

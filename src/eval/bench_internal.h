@@ -30,8 +30,6 @@ enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_p
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
                                   const struct orl_render_params *render,
                                   struct orl_bench_run *run);
-// The same of the scene's points as GL_POINTS.
-enum orl_result orl_bench_measure_raster(struct bench_job *job, struct orl_bench_run *run);
 // Draws some frames as those of `run` and writes the trace to job->params->trace.
 enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *renderer,
                                 const struct orl_render_params *render,

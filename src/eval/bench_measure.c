@@ -9,7 +9,6 @@
 #include "core/process.h"
 #include "core/vec3.h"
 #include "eval/bench_internal.h"
-#include "gpu/point_raster.h"
 #include "oriel/path.h"
 
 enum { WARM_UP = 2, TRACE_FRAMES = 6, TRACE_SPANS = 1024 };
@@ -81,12 +80,11 @@ enum orl_result orl_bench_resample(const struct orl_log *log, const struct orl_p
 
 // --- medians ---
 
-// The frames of one run, of the renderer or of the rasteriser.
+// The frames of one run.
 struct run_frames {
     struct bench_job *job;
     struct orl_renderer *renderer;
     const struct orl_render_params *render;
-    struct orl_point_raster *raster;
     struct orl_size size;
 };
 
@@ -98,78 +96,20 @@ static enum orl_result draw(void *priv, size_t number)
     return orl_renderer_draw(f->renderer, &view, f->render, NULL, NULL);
 }
 
-static enum orl_result time_frames(struct run_frames *frames,
-                                   enum orl_result (*draw_frame)(void *priv, size_t number),
-                                   struct orl_timing *timing)
-{
-    const struct bench_job *job = frames->job;
-    const struct orl_timing_params params = {
-        .draw = draw_frame, .priv = frames, .views = BENCH_VIEWS, .warm_up = WARM_UP,
-        .seconds = job->params->seconds, .frames_max = (size_t)job->params->frames,
-        .pass_frames = (size_t)job->params->frames, .progress = job->params->progress};
-    return orl_timing_take(job->gpu, &params, timing);
-}
-
 enum orl_result orl_bench_measure(struct bench_job *job, struct orl_renderer *renderer,
                                   const struct orl_render_params *render,
                                   struct orl_bench_run *run)
 {
-    struct run_frames frames = {job, renderer, render, NULL, run->size};
-    enum orl_result result = time_frames(&frames, draw, &run->timing);
+    struct run_frames frames = {job, renderer, render, run->size};
+    const struct orl_timing_params params = {
+        .draw = draw, .priv = &frames, .views = BENCH_VIEWS, .warm_up = WARM_UP,
+        .seconds = job->params->seconds, .frames_max = (size_t)job->params->frames,
+        .pass_frames = (size_t)job->params->frames, .progress = job->params->progress};
+    enum orl_result result = orl_timing_take(job->gpu, &params, &run->timing);
     if (result == ORL_OK && job->scene->frame_count)
         result = orl_scene_set_frame(job->log, job->scene, -1);
     run->device_bytes = orl_gpu_bytes(job->gpu);
     run->uploaded_bytes = orl_renderer_uploaded(renderer);
-    return result;
-}
-
-// --- GL_POINTS ---
-
-// GL's clip space from world with y downwards, in column-major order.
-static void clip_matrix(const struct orl_view *view, double near, double far, float out[16])
-{
-    const struct orl_camera *c = &view->camera;
-    const struct orl_pose *pose = &view->cam_from_world;
-    const double rows[4][3] = {
-        {2 * c->fx / c->width, 0, 2 * c->cx / c->width - 1},
-        {0, 2 * c->fy / c->height, 2 * c->cy / c->height - 1},
-        {0, 0, (far + near) / (far - near)},
-        {0, 0, 1}};
-    for (int i = 0; i < 4; i++) {
-        for (int j = 0; j < 4; j++) {
-            double sum = i == 2 && j == 3 ? -2 * far * near / (far - near) : 0;
-            for (int k = 0; k < 3; k++)
-                sum += rows[i][k] * (j < 3 ? pose->r[k][j] : pose->t[k]);
-            out[4 * j + i] = (float)sum;
-        }
-    }
-}
-
-static enum orl_result draw_raster(void *priv, size_t number)
-{
-    const struct run_frames *f = priv;
-    struct orl_view view = orl_bench_view(f->job, number, f->size);
-    double distance = f->job->scene->photo_distance;
-    float matrix[16];
-    clip_matrix(&view, 1e-3 * distance, 1e3 * distance, matrix);
-    orl_point_raster_draw(f->raster, matrix);
-    return orl_gpu_finish(f->job->gpu);
-}
-
-enum orl_result orl_bench_measure_raster(struct bench_job *job, struct orl_bench_run *run)
-{
-    const struct orl_points *points = &job->scene->points;
-    struct run_frames frames = {.job = job, .size = run->size};
-    struct orl_timing timing;
-    enum orl_result result = orl_point_raster_create(
-        job->gpu, (const float (*)[3])points->position, (const uint8_t (*)[3])points->color,
-        points->count, run->size.width, run->size.height, &frames.raster);
-    ORL_THEN(result, time_frames(&frames, draw_raster, &timing));
-    if (result == ORL_OK) {
-        run->gl_points_frames = timing.frames;
-        run->gl_points_ms = timing.passes[0].ms; // of the only pass
-    }
-    orl_point_raster_destroy(&frames.raster);
     return result;
 }
 
@@ -221,7 +161,7 @@ enum orl_result orl_bench_trace(struct bench_job *job, struct orl_renderer *rend
                                 const struct orl_render_params *render,
                                 const struct orl_bench_run *run)
 {
-    struct run_frames traced = {job, renderer, render, NULL, run->size};
+    struct run_frames traced = {job, renderer, render, run->size};
     double frames[TRACE_FRAMES][2]; // start and end
     struct orl_pass_trace trace = {.capacity = TRACE_SPANS};
     trace.spans = orl_array(job->log, TRACE_SPANS, sizeof *trace.spans);

@@ -84,9 +84,9 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     glBindVertexArray(gpu->vertex_array);
     GLsizei count = (GLsizei)r->count, instances = r->instances ? (GLsizei)r->instances : 1;
     if (r->indices)
-        glDrawElementsInstanced(r->primitive, count, GL_UNSIGNED_INT, NULL, instances);
+        glDrawElementsInstanced(GL_TRIANGLES, count, GL_UNSIGNED_INT, NULL, instances);
     else
-        glDrawArraysInstanced(r->primitive, 0, count, instances);
+        glDrawArraysInstanced(GL_TRIANGLES, 0, count, instances);
     glBindVertexArray(0);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);

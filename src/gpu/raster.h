@@ -1,4 +1,4 @@
-// Drawing with the graphics pipeline: triangles or points, with a depth test, into several targets.
+// Drawing with the graphics pipeline: triangles, with a depth test, into several targets.
 #ifndef ORL_GPU_RASTER_H
 #define ORL_GPU_RASTER_H
 
@@ -24,7 +24,6 @@ struct orl_raster {
     size_t params_size;
     struct orl_raster_input inputs[ORL_RASTER_INPUTS_MAX];
     const struct orl_buf *indices; // 32-bit; NULL: vertices in order
-    GLenum primitive;              // GL_TRIANGLES or GL_POINTS
     size_t count;                  // number of indices, or of vertices
     size_t instances;              // how often they are drawn; 0 counts as 1
     bool over;                     // blends, see above

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures Oriel on the GPU of this machine, in ten minutes at most: the tests of label gpu, frames a
-# second of all methods, points splatted a second beside GL_POINTS, stereo, memory, and the passes of
+# second of all methods, points splatted a second, stereo, memory, and the passes of
 # Airieau 2012's Table 2. Leaves OUT/gpu.json and the page OUT/gpu.md, which belongs to docs/measured.
 # A device that is software gets fewer and smaller pictures and fewer points; what ten minutes do not
 # reach is named.
@@ -144,9 +144,9 @@ table(["method"] + [$sizes[] | map(tostring) | join("x") + ", fps"] + ["device m
       ([$runs[].method] | unique)[] as $m |
       [$m] + [$sizes[] as $s | [$runs[] | select(.method == $m and .size == $s) | .fps][0] | fixed(1)] +
       [[$runs[] | select(.method == $m) | .device_bytes] | max / 1048576 | round]),
-table(["points", "picture", "splat, ms", "G points a second", "GL_POINTS, ms", "ratio"];
-      .points.gl_points // [] | .[] | [.points, (.size | map(tostring) | join("x")), (.splat_ms | fixed(3)),
-      (.points / .splat_ms / 1e6 | fixed(4)), (.gl_points_ms | fixed(3)), (.gl_points_ms / .splat_ms | fixed(1))]),
+table(["points", "picture", "splat, ms", "G points a second"];
+      .points.by_points // [] | .[] | [.points, (.size | map(tostring) | join("x")), (.passes_ms.splat | fixed(3)),
+      (.points / .passes_ms.splat / 1e6 | fixed(4))]),
 "Airieau 2012, Table 2 (a GeForce GTX 570), beside the method `airieau` here; milliseconds.", "",
 table(["scene", "size", "raster", "pull-push", "accumulate", "frame"];
       (["Cathedral, 3.8 M points, 58 photographs", "512x512", 7.4, 1.3, 2.7, 11.8], ["", "1024x1024", 7.6, 3.4, 7.0, 18.5],

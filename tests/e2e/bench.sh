@@ -19,15 +19,15 @@ bench=("$oriel" bench ws --quiet --seconds 0 --frames 3)
 runs 0 "${bench[@]}" --size 64x48 --size 32x32 --method all --points 500,5000 --json out.json \
     --trace trace.json --images pictures
 [ -s stderr.txt ] && fail "--quiet is not quiet"
-for word in airieau points 64x48 32x32 5000 GL_POINTS photographs device host splat gather; do
+for word in airieau points 64x48 32x32 5000 photographs device host splat gather; do
     grep -q -- "$word" stdout.txt || fail "the tables lack $word"
 done
 for field in scene device driver software points photographs photo_size host_peak_bytes memory \
-    sizes by_photographs by_points by_resolution gl_points method size photo_divide frames \
-    frame_ms slowest_ms cpu_ms fps device_bytes passes_ms splat_ms gl_points_ms owner tag bytes psnr_db; do
+    sizes by_photographs by_points by_resolution method size photo_divide frames \
+    frame_ms slowest_ms cpu_ms fps device_bytes passes_ms owner tag bytes psnr_db; do
     grep -q "\"$field\"" out.json || fail "no field $field"
 done
-for field in frame_ms slowest_ms splat_ms gl_points_ms device_bytes host_peak_bytes fps; do
+for field in frame_ms slowest_ms device_bytes host_peak_bytes fps; do
     numbers $field out.json | awk '!($1 > 0 && $1 < 1e12) { exit 1 }' ||
         fail "$field is not a positive number"
 done

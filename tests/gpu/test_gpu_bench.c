@@ -1,8 +1,6 @@
-// What benchmarks read from the device: memory by owner, spans of passes, and the
-// graphics pipeline's points.
+// What benchmarks read from the device: memory by owner, and spans of passes.
 #include <string.h>
 
-#include "gpu/point_raster.h"
 #include "gpu_test.h"
 
 static struct orl_gpu *gpu;
@@ -91,46 +89,11 @@ static void traces_passes(void **state)
     orl_buf_destroy(gpu, &buf);
 }
 
-// Three points: two in one pixel, the nearer one given first; one behind the viewer.
-static void rasters_nearest_points(void **state)
-{
-    (void)state;
-    enum { W = 8, H = 6 };
-    static const float positions[][3] = {{0.1f, 0.1f, 2}, {0.2f, 0.2f, 4}, {0.9f, 0.9f, 2},
-                                         {0, 0, -2}};
-    static const uint8_t colors[][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {9, 9, 9}};
-    // Focal lengths W / 2 and H / 2; depth from 1 to 100.
-    const float near = 1, far = 100;
-    const float matrix[16] = {1, 0, 0, 0,
-                              0, 1, 0, 0,
-                              0, 0, (far + near) / (far - near), 1,
-                              0, 0, -2 * far * near / (far - near), 0};
-    struct orl_point_raster *raster;
-    assert_int_equal(orl_point_raster_create(gpu, positions, colors, 4, W, H, &raster), ORL_OK);
-    for (int again = 0; again < 2; again++) {
-        orl_point_raster_draw(raster, matrix);
-        uint8_t pixels[H][W][4];
-        orl_tex_read(orl_point_raster_color(raster), 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof pixels,
-                     pixels);
-        size_t covered = 0;
-        for (int y = 0; y < H; y++)
-            for (int x = 0; x < W; x++)
-                covered += pixels[y][x][3] > 0;
-        assert_int_equal(covered, 2);
-        static const uint8_t red[] = {255, 0, 0, 255}, blue[] = {0, 0, 255, 255};
-        assert_memory_equal(pixels[3][4], red, 4);
-        assert_memory_equal(pixels[4][5], blue, 4); // at 5.8 and 4.35, y downwards
-    }
-    assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
-    orl_point_raster_destroy(&raster);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(counts_memory_by_owner_and_tag),
         cmocka_unit_test(traces_passes),
-        cmocka_unit_test(rasters_nearest_points),
     };
     gpu = gpu_test_device();
     int failures = cmocka_run_group_tests(tests, NULL, NULL);

@@ -124,7 +124,7 @@ static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view 
         .prog = orl_prog_get_raster(gpu, "hull/billboard.vert", "hull/depth.frag", NULL),
         .params = &block, .params_size = sizeof block,
         .inputs = {{state->centres, 0, 3 * sizeof(float), 3, GL_FLOAT, true}},
-        .primitive = GL_TRIANGLES, .count = 6, .instances = state->voxels.count,
+        .count = 6, .instances = state->voxels.count,
         .targets = {target->surface.depth, target->surface.normal}, .depth = target->test,
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
     };

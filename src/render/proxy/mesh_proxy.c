@@ -135,7 +135,7 @@ void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_vie
         .params = &block, .params_size = sizeof block,
         .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
                     .type = GL_FLOAT}},
-        .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
+        .indices = state->indices, .count = 3 * state->mesh.triangle_count,
         .targets = {target->surface.depth, target->surface.normal}, .depth = target->test,
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
     };
@@ -161,7 +161,7 @@ static void color(struct orl_gpu *gpu, const void *handle, const struct orl_view
                     .type = GL_FLOAT},
                    {.buf = state->colors, .stride = 4, .components = 4,
                     .type = GL_UNSIGNED_BYTE}},
-        .indices = state->indices, .primitive = GL_TRIANGLES, .count = 3 * state->mesh.triangle_count,
+        .indices = state->indices, .count = 3 * state->mesh.triangle_count,
         .targets = {into->picture}, .depth = target->test,
         .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
     };

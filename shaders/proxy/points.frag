@@ -1,7 +1,0 @@
-layout(location = 0) in vec4 color;
-layout(location = 0) out vec4 out_color;
-
-void main()
-{
-    out_color = color;
-}
