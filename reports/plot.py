@@ -23,13 +23,11 @@ def bars(title, label, rows, path):
     report.save(figure, path)
 
 
-def curves(title, x_label, y_label, series, path, log=False):
-    """series: {name: [(x, y), ..]}."""
+def curve(title, x_label, y_label, dots, path):
+    """Dots (x, y) in the order of x, which is logarithmic."""
     figure, axis = report.pyplot().subplots(figsize=(9, 5))
-    for name, dots in series.items():
-        axis.plot(*zip(*sorted(dots)), "o-", label=name)
-    axis.set(title=title, xlabel=x_label, ylabel=y_label, xscale="log" if log else "linear")
-    axis.legend(fontsize=7)
+    axis.plot(*zip(*sorted(dots)), "o-")
+    axis.set(title=title, xlabel=x_label, ylabel=y_label, xscale="log")
     report.save(figure, path)
 
 
@@ -42,15 +40,6 @@ def plot_bench(bench, out):
         owners[part["owner"]] = owners.get(part["owner"], 0) + part["bytes"] / MIB
     bars("Memory by owner", "MiB", [("device", owners), ("host, at most", {
         "process": bench["host_peak_bytes"] / MIB})], out / "memory.svg")
-    for name, x_label, x in (("photographs", "photographs in use", lambda run: run["photographs"]),
-                             ("points", "points", lambda run: run["points"]),
-                             ("resolution", "photographs' size, 1/N", lambda run: run["photo_divide"])):
-        series = {}
-        for run in bench[f"by_{name}"]:
-            series.setdefault(run["method"], []).append((x(run), run["frame_ms"]))
-        if series:
-            curves(f"Time of a frame against {x_label}", x_label, "milliseconds, median of frames",
-                   series, out / f"{name}.svg", log=name == "points")
 
 
 def plot_trim(trim, out):
@@ -58,9 +47,8 @@ def plot_trim(trim, out):
     before = trim["before"]["point_bytes"] + trim["before"]["photo_bytes"]
     bars("The model after each step", "MiB on the device", [("whole scene", {"model": before / MIB})] + [
         (step["what"], {"model": step["bytes"] / MIB}) for step in taken], out / "waterfall.svg")
-    curves("Loss against bytes", "MiB on the device", "dB lost, training photographs", {
-        "steps": [(before / MIB, 0)] + [(step["bytes"] / MIB, step["total_loss_db"]) for step in taken]},
-        out / "curve.svg", log=True)
+    curve("Loss against bytes", "MiB on the device", "dB lost, training photographs",
+          [(before / MIB, 0)] + [(step["bytes"] / MIB, step["total_loss_db"]) for step in taken], out / "curve.svg")
 
 
 def make(run):

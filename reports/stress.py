@@ -21,6 +21,7 @@ POINTS_MAX, POINT_STEP = 120000, 3
 PHOTOS_LEFT, PHOTOS_FOR_A_VIEW = 3, 2
 STEPS_APART = 8  # of the cameras that are most out of step
 LOSSES_DB = [1, 3, 6]
+COSTS = ["frame_ms", "cpu_ms", "device_bytes"]
 ON_ORIEL = "+oriel"  # after a method's name: its weights on the proxy and the guesses of oriel
 REFINED = "oriel+soft"  # oriel, once oriel refine has made soft splats of the case
 BARS_DISTANCE_M, FOCAL = 9.8, 28 / 35  # of the monument's bars; focal length of the larger side
@@ -757,7 +758,8 @@ def measure_severity(run, source, name, level, methods):
         if "refined" in more and run.call("refine", scene, quiet=True) is not None:
             for found in run.measure(scene, ["oriel"], [], truth, walk) or []:
                 take(REFINED, case, found)
-    return {method: {"device": found[0]["device"], "flicker": mean([f["flicker"] for f in found]),
+    return {method: {"device": found[0]["device"],
+                     **{key: mean([f[key] for f in found]) for key in ("flicker", *COSTS)},
                      "mean": {key: mean([f["mean"][key] for f in found]) for key in FIGURES}}
             for method, found in rows.items() if len(found) == len(cases)}
 
@@ -794,10 +796,10 @@ def find_losses(axes, methods, rows):
 
 def draw(axis, methods, rows, title, path):
     plot = report.pyplot()
-    figure, plots = plot.subplots(1, 2, figsize=(12, 4.5))
+    figure, plots = plot.subplots(1, 3, figsize=(18, 4.5))
     figure.suptitle(title)
     shown = (("PSNR of whole pictures, dB", lambda row: row["mean"]["psnr_db"]),
-             ("flicker", lambda row: row["flicker"]))
+             ("flicker", lambda row: row["flicker"]), ("milliseconds a frame", lambda row: row["frame_ms"]))
     for one, (label, value) in zip(plots, shown):
         for method in methods:
             found = [row for row in rows if row["axis"] == axis["name"] and row["method"] == method

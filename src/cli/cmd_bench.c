@@ -41,30 +41,21 @@ static void print_memory(const struct orl_bench *bench)
            mib(bench->host_peak_bytes));
 }
 
-static void print_run(const struct orl_bench_run *run)
-{
-    char varied[32];
-    orl_bench_run_print(run, varied);
-    printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, varied,
-           run->timing.median_ms, run->timing.slowest_ms,
-           run->timing.median_ms > 0 ? 1e3 / run->timing.median_ms : 0.0, run->timing.frames,
-           mib(run->device_bytes));
-    for (size_t i = 0; i < run->timing.pass_count; i++)
-        printf("%s %s %.2f", i ? "," : "", run->timing.passes[i].name, run->timing.passes[i].ms);
-    if (run->psnr_db > 0)
-        printf("; %.1f dB to full size", run->psnr_db);
-    printf("\n");
-}
-
 static void print_runs(const struct orl_bench *bench)
 {
+    printf("\n%-12s %-22s %9s %9s %8s %7s %9s  %s\n", "method", "picture", "frame ms", "slowest", "fps",
+           "frames", "MiB", "ms by pass");
     for (size_t i = 0; i < bench->run_count; i++) {
         const struct orl_bench_run *run = &bench->runs[i];
-        if (i == 0 || run->kind != run[-1].kind)
-            printf("\n%-12s %-22s %9s %9s %8s %7s %9s  %s\n", "method",
-                   orl_bench_kind_names[run->kind], "frame ms", "slowest", "fps", "frames", "MiB",
-                   "ms by pass");
-        print_run(run);
+        const struct orl_timing *timing = &run->timing;
+        char size[32];
+        snprintf(size, sizeof size, "%dx%d", run->size.width, run->size.height);
+        printf("%-12s %-22s %9.2f %9.2f %8.1f %7zu %9.1f ", run->method, size, timing->median_ms,
+               timing->slowest_ms, timing->median_ms > 0 ? 1e3 / timing->median_ms : 0.0,
+               timing->frames, mib(run->device_bytes));
+        for (size_t k = 0; k < timing->pass_count; k++)
+            printf("%s %s %.2f", k ? "," : "", timing->passes[k].name, timing->passes[k].ms);
+        printf("\n");
     }
 }
 
@@ -112,7 +103,6 @@ const struct command command_bench = {
     .name = "bench", .group = COMMAND_MEASURE,
     .brief = "time and memory of frames, pass by pass",
     .usage = "SCENE [options]",
-    .summary = "Measures frames: time pass by pass, memory by owner, and how both grow with points,\n"
-               "photographs and their resolution. Medians; the device is named.",
+    .summary = "Measures frames: time pass by pass and memory by owner. Medians; the device is named.",
     COMMAND_TABLE(bench_options), .inputs_min = 1, .inputs_max = 1, .run = run_bench,
 };

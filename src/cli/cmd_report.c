@@ -140,7 +140,7 @@ const struct command command_plot = {
     .name = "plot", .group = COMMAND_MEASURE,
     .brief = "figures of what bench or trim has measured",
     .usage = "FILE.json --out DIR",
-    .summary = "Draws figures of what oriel bench --json has written (time by pass, memory by owner,\n"
-               "growth), or oriel trim --json (bytes after each step, loss against bytes).",
+    .summary = "Draws figures of what oriel bench --json has written (time by pass, memory by owner),\n"
+               "or oriel trim --json (bytes after each step, loss against bytes).",
     COMMAND_TABLE(plot_options), .inputs_min = 1, .inputs_max = 1, .run = run_report,
 };

@@ -1,5 +1,5 @@
-// What a frame costs: time by pass, memory by owner, and how both grow (tables 1 and 2 and figures
-// 13 and 15 of Airieau 2012, for any scene).
+// What a frame costs: time by pass and memory by owner (tables 1 and 2 of Airieau 2012, for any
+// scene).
 #ifndef ORL_EVAL_BENCH_H
 #define ORL_EVAL_BENCH_H
 
@@ -11,42 +11,20 @@
 
 enum { ORL_BENCH_MEMORY_MAX = 64 };
 
-enum orl_bench_kind {
-    ORL_BENCH_SIZES,       // of the picture: table 2
-    ORL_BENCH_PHOTOGRAPHS, // their number: figure 13
-    ORL_BENCH_POINTS,      // their number
-    ORL_BENCH_RESOLUTION,  // of the photographs: figure 15
-    ORL_BENCH_KIND_COUNT
-};
-// What the runs of a kind differ in.
-extern const char *const orl_bench_kind_names[ORL_BENCH_KIND_COUNT];
-
-// One row: a configuration, and what was measured of it.
+// One row: a size and a method, and what was measured of it.
 struct orl_bench_run {
-    enum orl_bench_kind kind;
     const char *method;
-    struct orl_size size;       // of the picture
-    size_t photographs, points;
-    int photo_divide;           // photographs at 1/n of their size
+    struct orl_size size; // of the picture
     struct orl_timing timing;
     size_t device_bytes;
-    size_t uploaded_bytes;      // photographs and masks that went to the device
-    double psnr_db;             // ORL_BENCH_RESOLUTION, first method: PSNR against full size; else
-                                // 0
+    size_t uploaded_bytes; // photographs and masks that went to the device
 };
-// What the run's kind varies, such as "512x512".
-void orl_bench_run_print(const struct orl_bench_run *run, char text[32]);
 
-// Growth is measured at the first size.
 #define ORL_BENCH_OPTIONS(ROW) \
     ROW(sizes, "size", LIST("WxH"), "of the picture; default: 512x512 and 1024x1024") \
-    ROW(points, "points", LIST("N,N,.."), \
-        "numbers of points to try; beyond the scene's, points are split; default: parts of them, and a million") \
     ROW(seconds, "seconds", NUMBER(1, 0, 3600, "S"), "for each median, about") \
     ROW(frames, "frames", INT(100, ORL_TIMING_FRAMES_MIN, 100000, "N"), "for each median, at most") \
-    ROW(quick, "quick", FLAG, "sizes only: no growth") \
     ROW(trace, "trace", TEXT("FILE"), "write a few frames for chrome://tracing or ui.perfetto.dev") \
-    ROW(images, "images", TEXT("DIR"), "write pictures at each resolution of the photographs") \
     ROW(textures, "textures", CHOICE(orl_textures, ORL_TEXTURES, ORL_TEXTURES_AUTO, "KIND"), \
         "photographs on the device") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
@@ -63,15 +41,15 @@ struct orl_bench {
     size_t photographs;      // number that the renderer may use
     int photo_width, photo_height; // largest
     size_t host_peak_bytes;
-    struct orl_bench_run *runs; // owned, kind by kind
+    struct orl_bench_run *runs; // owned
     size_t run_count, run_capacity;
     struct orl_gpu_memory memory[ORL_BENCH_MEMORY_MAX]; // of the first run
     size_t memory_count;
 };
 
 // Renders fixed views between neighbouring photographs, without using held-out photographs, of a
-// sequence a time step a frame. Creates its own renderers, one after another. ORL_ERR_ARGUMENT: a text
-// among the sizes or points is none.
+// sequence a time step a frame. Creates its own renderer. ORL_ERR_ARGUMENT: a text among the sizes is
+// none.
 enum orl_result orl_bench_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                               const struct orl_bench_params *params,
                               struct orl_bench *bench) ORL_CHECK_RESULT;

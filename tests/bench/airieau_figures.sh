@@ -6,7 +6,7 @@
 #   figure 9: points with their own colours             table 1: memory
 #   figure 14: a textured mesh (SCENE/mesh.ply),        table 2: time by pass, 512 and 1024
 #     its colours the mean of the photographs that see it
-# PHOTO, a held-out one, is the viewpoint of the pictures. Needs jq.
+# PHOTO, a held-out one, is the viewpoint of the pictures. Needs jq and ImageMagick.
 # usage: airieau_figures.sh BUILD SCENE PHOTO OUT
 set -eu
 build=$1 scene=$2 photo=$3 out=$4
@@ -63,10 +63,33 @@ jq -r '"Table 2: ratios to the frame of 512x512.", "", "| size | splats | pull, 
      "| \(.size[0])x\(.size[1]) | \(of(["splat"]) | r) | \(of(["pull-push"]) | r) | \(of(["gather"]) | r) | \(.frame_ms | r) |")' \
     "$out/bench.json"
 echo
-jq -r '"Figure 13.", "", "| photographs | time, ratio to the fewest |", "|---|---|",
-    (.by_photographs[0].cpu_ms as $unit | .by_photographs[] |
-     "| \(.photographs) | \(.cpu_ms / $unit * 100 | round / 100) |")' "$out/bench.json"
+echo "Figure 13."
 echo
-jq -r '"Figure 15.", "", "| photographs at | PSNR, dB | device memory, MiB |", "|---|---|---|",
-    (.by_resolution[] | "| 1/\(.photo_divide) | \(if .psnr_db then .psnr_db * 100 | round / 100 else "-" end) | \(.device_bytes / 1048576 | round) |")' \
-    "$out/bench.json"
+echo "| photographs | time, ratio to the fewest |"
+echo "|---|---|"
+all=$(jq .photographs "$out/bench.json") unit=
+copy fewer ""
+for ((count = 1, last = 0; last < all; last = count, count *= 2)); do
+    [ $count -lt "$all" ] || count=$all
+    # Holds the others out: `count` photographs stay, evenly chosen.
+    jq --argjson count $count --argjson all "$all" \
+        '[.photographs | to_entries[] | select(.value.split == "train") | .key] as $used
+        | reduce range($all) as $i (.; if (($i + 1) * $count / $all | floor) > ($i * $count / $all | floor) then .
+              else .photographs[$used[$i]].split = "test" end)' "$scene/scene.json" >"$out/fewer/scene.json"
+    ms=$("$oriel" bench "$out/fewer" --method airieau --size 512x512 --quiet --seconds 0.3 --json - | jq '.sizes[0].cpu_ms')
+    [ -n "$unit" ] || unit=$ms
+    jq -nr --argjson n $count --argjson ms "$ms" --argjson unit "$unit" \
+        '"| \($n) | \($ms / $unit * 100 | round / 100) |"'
+done
+echo
+echo "Figure 15."
+echo
+echo "| photographs at | PSNR to full size, dB | device memory, MiB |"
+echo "|---|---|---|"
+for divide in 1 2 4 8; do
+    drawn=$out/fig15-1of$divide
+    mib=$("$oriel" eval "$scene" --method airieau --views 1 --photo-divide $divide --images "$drawn" --quiet --json - |
+        jq '.device_bytes | add / 1048576 | round')
+    echo "| 1/$divide | $([ $divide = 1 ] && echo - || compare -metric PSNR "$out"/fig15-1of1/*.airieau.png \
+        "$drawn"/*.airieau.png null: 2>&1) | $mib |"
+done

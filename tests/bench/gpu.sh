@@ -2,7 +2,7 @@
 # Measures Oriel on the GPU of this machine, in ten minutes at most: the tests of label gpu, frames a
 # second of all methods, points splatted a second, stereo, memory, and the passes of
 # Airieau 2012's Table 2. Leaves OUT/gpu.json and the page OUT/gpu.md, which belongs to docs/measured.
-# A device that is software gets fewer and smaller pictures and fewer points; what ten minutes do not
+# A device that is software gets fewer and smaller pictures; what ten minutes do not
 # reach is named.
 # usage: tests/bench/gpu.sh BUILD OUT
 #        tests/bench/gpu.sh --pack BUILD FILE.tar.gz
@@ -71,28 +71,21 @@ make_scene() {
 
 echo "== the device"
 make_scene 1 --size 192x128 --count 8
-"$build/oriel" bench scene --method points --size 64x64 --quick --seconds 0.01 --quiet --json device.json >/dev/null
+"$build/oriel" bench scene --method points --size 64x64 --seconds 0.01 --quiet --json device.json >/dev/null
 jq -r '.device' device.json
 if [ "$(jq .software device.json)" = true ]; then
-    sizes=(256x256 512x512) points=100000,1000000 seconds=0.05 stereo=
+    sizes=(256x256 512x512) seconds=0.05 stereo=
 else
-    sizes=(512x512 1024x1024 1920x1080) points=1000000,10000000 seconds=0.3 stereo=full
-    # A point takes 150 bytes of this machine's memory on its way to the device.
-    free_mib=$(awk '/^MemAvailable/ { print int($2 / 1024) }' /proc/meminfo)
-    [ "$free_mib" -lt 24000 ] || points=$points,100000000
+    sizes=(512x512 1024x1024 1920x1080) seconds=0.3 stereo=full
     make_scene 2 --size 768x512 --count 24
 fi
 
-# What a part that fails or is not done in time leaves.
-echo null | tee frames.json points.json >/dev/null
+echo null >frames.json # what this part leaves if it fails or is not done in time
 echo "== frames"
 wanted=()
 for size in "${sizes[@]}"; do wanted+=(--size "$size"); done
-by 180 "$build/oriel" bench scene --method all "${wanted[@]}" --quick --seconds $seconds --quiet \
+by 180 "$build/oriel" bench scene --method all "${wanted[@]}" --seconds $seconds --quiet \
     --json frames.json >frames.txt || echo "the frames are not measured: see frames.txt"
-echo "== points"
-by 280 "$build/oriel" bench scene --method points --size "${sizes[1]}" --points $points --seconds $seconds \
-    --quiet --json points.json >points.txt || echo "the points are not measured: see points.txt"
 echo "== stereo"
 by 360 "$build/tests/gpu_test_densify_truth" $stereo >stereo.log 2>&1 ||
     echo "the stereo differs from the truth, or was not done in time"
@@ -116,11 +109,11 @@ done
 
 jq -n --arg commit "$commit" --arg date "$(date -u +%F)" --argjson stereo "${stereo_s:-null}" \
     --arg cpu "$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), $(nproc) cores" \
-    --slurpfile tests tests.json --slurpfile frames frames.json --slurpfile points points.json \
+    --slurpfile tests tests.json --slurpfile frames frames.json \
     --slurpfile device device.json --argjson seconds $SECONDS --argjson photographs "$(ls scene/images | wc -l)" \
     '{commit: $commit, date: $date, device: $device[0].device, driver: $device[0].driver,
       software: $device[0].software, photographs: $photographs, cpu: $cpu, seconds: $seconds, tests: $tests[0], stereo_s_a_photograph: $stereo,
-      frames: $frames[0], points: $points[0]}' >gpu.json
+      frames: $frames[0]}' >gpu.json
 jq -r '
 def fixed(d): if . == null then "-" else . * pow(10; d) | round / pow(10; d) end;
 def row: "| " + (map(tostring) | join(" | ")) + " |";
@@ -145,8 +138,8 @@ table(["method"] + [$sizes[] | map(tostring) | join("x") + ", fps"] + ["device m
       [$m] + [$sizes[] as $s | [$runs[] | select(.method == $m and .size == $s) | .fps][0] | fixed(1)] +
       [[$runs[] | select(.method == $m) | .device_bytes] | max / 1048576 | round]),
 table(["points", "picture", "splat, ms", "G points a second"];
-      .points.by_points // [] | .[] | [.points, (.size | map(tostring) | join("x")), (.passes_ms.splat | fixed(3)),
-      (.points / .passes_ms.splat / 1e6 | fixed(4))]),
+      .frames.points as $points | $runs[] | select(.method == "points") | [$points, (.size | map(tostring) | join("x")),
+      (.passes_ms.splat | fixed(3)), ($points / .passes_ms.splat / 1e6 | fixed(4))]),
 "Airieau 2012, Table 2 (a GeForce GTX 570), beside the method `airieau` here; milliseconds.", "",
 table(["scene", "size", "raster", "pull-push", "accumulate", "frame"];
       (["Cathedral, 3.8 M points, 58 photographs", "512x512", 7.4, 1.3, 2.7, 11.8], ["", "1024x1024", 7.6, 3.4, 7.0, 18.5],

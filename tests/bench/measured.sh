@@ -282,7 +282,7 @@ method_table() { # SCENE OPTIONS
 page_methods() {
     local synth='oriel synth figures --out WORK/figures --cameras 8 --size 320x240 --quiet'
     local import='oriel import WORK/figures --masks WORK/figures/masks --background WORK/figures/background --mesh hull=64,5000 --test-list cam02,cam05 --out WORK/figure --quiet'
-    local methods_bench='--quick --size 512x512 --seconds 1 --frames 8'
+    local methods_bench='--size 512x512 --seconds 1 --frames 8'
     local outlines=(
         'oriel import DATASETS/temple-sparse-ring/templeSR_par.txt --images DATASETS/temple-sparse-ring/images --silhouettes dark=55 --mesh hull --test-every 8 --max-size 400 --out WORK/temple --quiet'
         'oriel import DATASETS/dino-sparse-ring/dinoSR_par.txt --images DATASETS/dino-sparse-ring/images --silhouettes dark=55 --mesh hull --test-every 8 --max-size 400 --out WORK/dino --quiet'
@@ -439,7 +439,7 @@ END
 }
 
 page_memory() {
-    local bench="oriel bench SCENES/NAME --quick --size 768x512 --seconds 1 --textures KIND --quiet --json -"
+    local bench="oriel bench SCENES/NAME --size 768x512 --seconds 1 --textures KIND --quiet --json -"
     local eval="oriel eval SCENES/NAME --textures KIND --quiet --json -"
     local kind name
     name=$(scene_names fountain)

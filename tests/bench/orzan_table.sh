@@ -26,7 +26,7 @@ for row in "${rows[@]}"; do
     read -r method settings <<<"${row##*|}"
     set=(--method "$method")
     for setting in $settings; do set+=(--set "$setting"); done
-    ms=$("$oriel" bench "$scene" --quick --size 512x512 --seconds 2 --frames 12 --quiet --json - \
+    ms=$("$oriel" bench "$scene" --size 512x512 --seconds 2 --frames 12 --quiet --json - \
         "${set[@]}" | jq '.sizes[0].cpu_ms')
     cpu+=("$ms")
     slowest=$(jq -n "[$slowest, $ms] | max")

@@ -51,7 +51,7 @@ draw() {
             --out "$out/pictures/$peer/$name/${photo%.*}.png" </dev/null
     done
     size=$("$oriel" info "$ws" --json | jq -r ".photographs[0].size | map(. / $divide | floor) | join(\"x\")")
-    cost=$("$oriel" bench "$ws" --method points "$@" --size "$size" --quick --seconds 1 --quiet \
+    cost=$("$oriel" bench "$ws" --method points "$@" --size "$size" --seconds 1 --quiet \
         --json - | jq -r '.sizes[0] | "ms=\(.frame_ms),MIB=\(.device_bytes / 1048576)"')
     peers+=(--peer "$peer=$out/pictures/$peer,$cost")
     echo "$peer: $cost" >&2

@@ -23,7 +23,7 @@ mv photos-truth/sparse ws/sparse
 
 arguments=()
 for method in "$@"; do arguments+=(--method "$method"); done
-"$oriel" bench ws --quiet --quick --seconds 3 --size 512x512 --size 1024x1024 "${arguments[@]}" \
+"$oriel" bench ws --quiet --seconds 3 --size 512x512 --size 1024x1024 "${arguments[@]}" \
     >table.txt
 device=$(sed -n 's/^device  *//p' table.txt | head -n 1)
 awk -v commit="$commit" -v device="$device" '

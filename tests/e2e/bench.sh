@@ -16,48 +16,37 @@ scene train train train test
 head -c 700 "ws/images/${names[3]}" >cut && mv cut "ws/images/${names[3]}"
 
 bench=("$oriel" bench ws --quiet --seconds 0 --frames 3)
-runs 0 "${bench[@]}" --size 64x48 --size 32x32 --method all --points 500,5000 --json out.json \
-    --trace trace.json --images pictures
+runs 0 "${bench[@]}" --size 64x48 --size 32x32 --method all --json out.json --trace trace.json
 [ -s stderr.txt ] && fail "--quiet is not quiet"
-for word in airieau points 64x48 32x32 5000 photographs device host splat gather; do
+for word in airieau points 64x48 32x32 photographs device host splat gather; do
     grep -q -- "$word" stdout.txt || fail "the tables lack $word"
 done
 for field in scene device driver software points photographs photo_size host_peak_bytes memory \
-    sizes by_photographs by_points by_resolution method size photo_divide frames \
-    frame_ms slowest_ms cpu_ms fps device_bytes passes_ms owner tag bytes psnr_db; do
+    sizes method size frames frame_ms slowest_ms cpu_ms fps device_bytes uploaded_bytes passes_ms owner tag bytes; do
     grep -q "\"$field\"" out.json || fail "no field $field"
 done
 for field in frame_ms slowest_ms device_bytes host_peak_bytes fps; do
     numbers $field out.json | awk '!($1 > 0 && $1 < 1e12) { exit 1 }' ||
         fail "$field is not a positive number"
 done
-# Three photographs may be used; 1, 2, 3 were tried, and full size to an eighth.
 methods=$("$oriel" eval ws --method nonsense 2>&1 | sed -n 's/.*there are: *//p' | wc -w)
-for count in 1 2 3; do
-    grep -q "\"photographs\": $count," out.json || fail "$count photographs were not tried"
-done
-grep -q '"photographs": 4,' out.json && fail "the held-out photograph was used"
-[ "$(grep -c '"photo_divide": 8,' out.json)" = "$methods" ] || fail "not each method at 1/8"
+[ "$(grep -c '"frame_ms":' out.json)" = $((2 * methods)) ] || fail "not each method at each size"
+grep -q '"photographs": 3,' out.json || fail "other than the three photographs that are not held out"
 numbers frames out.json | grep -qvx 3 && fail "other than three frames"
-# Halved photographs are not the full ones, but look like them.
-numbers psnr_db out.json | awk '!($1 > 5 && $1 < 99) { exit 1 } END { exit NR != 3 }' ||
-    fail "not three closenesses to full size"
 
 [ "$(head -c1 trace.json)" = "{" ] || fail "the trace is no object"
 for word in traceEvents '"ph": "X"' '"frame"' '"splat"' thread_name; do
     grep -q "$word" trace.json || fail "the trace lacks $word"
 done
 numbers dur trace.json | awk '$1 < 0 { exit 1 }' || fail "a span that ends before it starts"
-[ "$(ls pictures/photographs_1of*.png | wc -l)" = 4 ] || fail "no pictures of each resolution"
 
-runs 0 "${bench[@]}" --size 32x32 --json - --quick
+runs 0 "${bench[@]}" --size 32x32 --json -
 head -c1 stdout.txt | grep -q '{' || fail "--json - writes something else, too"
-grep -q '"by_points": \[\]' stdout.txt || fail "--quick is not quick"
 
 # Of a sequence every frame shows another time step, so that its time has the hull's.
 runs 0 "$oriel" synth figures --out set --cameras 5 --frames 3 --size 64x48
 runs 0 "$oriel" import set --masks set/masks --background set/background --out moving
-moving=("$oriel" bench moving --quiet --seconds 0 --frames 4 --size 32x32 --method li --quick)
+moving=("$oriel" bench moving --quiet --seconds 0 --frames 4 --size 32x32 --method li)
 runs 0 "${moving[@]}" --json -
 grep -q '"time_steps": 3,' stdout.txt || fail "does not say how many time steps there are"
 grep -q '"hull"' stdout.txt || fail "the hull takes no time"
@@ -66,20 +55,17 @@ grep -q '^time steps  *3, ' stdout.txt || fail "the tables do not say how many t
 mv moving/frames not-now
 runs 0 "${moving[@]}" --json -
 grep -q '"hull"' stdout.txt && fail "a hull that stays takes time in each frame"
-runs 0 "$oriel" bench moving --quiet --seconds 0 --frames 3 --size 32x32 --method li --json -
-grep -q '"photographs": 2,' stdout.txt || fail "no growth with photographs that carve a hull"
 
 runs 2 "${bench[@]}" --method nonsense
 grep -q airieau stderr.txt || fail "does not list the methods"
 runs 2 "${bench[@]}" --size 12
 runs 2 "${bench[@]}" --size 64x48x2
-runs 2 "${bench[@]}" --points 0
 runs 2 "${bench[@]}" --set nonsense=1
 runs 2 "$oriel" bench nowhere
 runs 0 "$oriel" bench --help
 # Results that get lost.
 if [ -w /dev/full ]; then
-    "$oriel" bench ws --quick --seconds 0 --frames 3 --size 32x32 >/dev/full 2>stderr.txt &&
+    "$oriel" bench ws --seconds 0 --frames 3 --size 32x32 >/dev/full 2>stderr.txt &&
         fail "figures that could not be written went unnoticed"
     "$oriel" info ws >/dev/full 2>stderr.txt && fail "info that could not be written went unnoticed"
 fi
@@ -87,7 +73,7 @@ fi
 # Figures of these figures.
 needs_reports
 runs 0 "$oriel" plot out.json --out plots
-for plot in passes memory photographs points resolution; do
+for plot in passes memory; do
     tail -n1 plots/$plot.svg | grep -q '</svg>' || fail "no plot of $plot"
 done
 runs 2 "$oriel" plot trace.json --out plots

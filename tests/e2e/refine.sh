@@ -60,7 +60,7 @@ grep -q "refine: 1 MiB of device memory are not enough for photographs of 96x64:
 picture 0 0 own.png
 picture 0 0.3 soft.png
 cmp -s own.png soft.png && fail "soft splats change nothing"
-runs 0 "$oriel" bench ws --quick --size 64x48 --set soft=0.3 --seconds 0.1 --json bench.json
+runs 0 "$oriel" bench ws --size 64x48 --set soft=0.3 --seconds 0.1 --json bench.json
 grep -q '"soft splats"' bench.json || fail "their pass is not timed"
 jq -e '.sizes[0].passes_ms | keys_unsorted | index("soft splats") < index("specks")' bench.json >/dev/null || fail "specks go before soft splats come"
 

@@ -13,7 +13,7 @@ grep -qv '^checked on the device' stderr.txt && fail "--quiet is not quiet"
 grep -q '^18 rows measured, 0 used again, 0 left out' stdout.txt || fail "no summary"
 grep -q '(jpeg)$' stdout.txt || fail "no table of an axis"
 for field in version device quick scene truth size seed methods axes title unit levels own_truth rows severity \
-    level mean psnr_db ssim flip crumbs completeness coverage flicker losses start_db worst_db lost_db at; do
+    level mean psnr_db ssim flip crumbs completeness coverage flicker frame_ms cpu_ms device_bytes losses start_db worst_db lost_db at; do
     grep -q "\"$field\"" report/stress.json || fail "no field $field"
 done
 for axis in photographs jpeg; do
