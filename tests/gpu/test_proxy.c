@@ -135,7 +135,7 @@ static void behind_and_outside_are_not_drawn(void **state)
 }
 
 // Discs of 3 and 2 pixels, more and less than a sixteenth of 40, near and far.
-static void large_splats_near_the_viewer_are_strays(void **state)
+static void large_splats_near_the_viewer_are_outliers(void **state)
 {
     (void)state;
     struct orl_view view = front_view();
@@ -364,7 +364,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_point_lands_in_its_pixel),
         cmocka_unit_test(behind_and_outside_are_not_drawn),
-        cmocka_unit_test(large_splats_near_the_viewer_are_strays),
+        cmocka_unit_test(large_splats_near_the_viewer_are_outliers),
         cmocka_unit_test(nearest_wins_and_ties_go_to_the_lowest_index),
         cmocka_unit_test(the_camera_pose_is_cam_from_world),
         cmocka_unit_test(a_disc_fills_its_projection),

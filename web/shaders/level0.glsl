@@ -9,7 +9,7 @@ uniform highp usampler2D splat_normals;
 uniform sampler2D layers; // layer.frag
 uniform float front_layer;
 uniform vec4 view_focal;
-uniform float near; // depth nearer than which large splats are strays
+uniform float near; // depth nearer than which large splats are outliers
 
 bool within(ivec2 at, ivec2 area)
 {
