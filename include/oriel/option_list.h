@@ -25,7 +25,7 @@
         "splats, or of the mesh's vertices, and `billboards` draws one for each voxel.") \
     SLOT(select, orl_selection, &orl_select_all, "paint=gather paint=tiled", \
         "The photographs that a frame may use: all of them, the `nearest` by their direction " \
-        "from the scene's centre, the 48 that can paint the view best (`preselect`), or the " \
+        "from the scene's centre, the 32 that can paint the view best (`preselect`), or the " \
         "nearest and some more for what they see too obliquely (`princ`).") \
     FILE(visibility, "hard", "paint=gather paint=tiled", \
         "Which photographs see a surface point: all (`none`), those whose own depth map agrees, " \

@@ -10,6 +10,8 @@
 #define ORL_BORDER_PX 2.0
 // Photographs that are listed for each tile of the screen: one more than a pixel can blend.
 #define ORL_CANDIDATES 5
+// Photographs that a frame is painted from, at most; the page numbers them by one byte. Radiance asks all.
+#define ORL_PHOTOS_PER_FRAME 32
 // Ground farther than so many of the photographs' heights above it is ignored: what stands on it hides it.
 #define ORL_GROUND_REACH 20.0
 // The farthest estimate of background depth, as a multiple of a typical depth of the scene.

@@ -84,15 +84,15 @@ export function nearestPhoto(photos, view)
 
 // --- on the graphics chip ---
 
-const PER_FRAME = 32; // that one frame paints from; one byte numbers them
 const ROW_TEXELS = 9;
 
 export class PhotoStore {
-    // radiance: {peak, mu}, of photographs that are radiance; undefined: they are sRGB
-    constructor(device, programs, photos, budgetBytes, radiance)
+    // perFrame: photographs that one frame paints from; radiance: {peak, mu}, of photographs that are radiance;
+    // undefined: they are sRGB
+    constructor(device, programs, photos, perFrame, budgetBytes, radiance)
     {
         const gl = device.gl, largest = key => Math.max(...photos.map(p => key(p)));
-        Object.assign(this, {device, programs, photos, radiance});
+        Object.assign(this, {device, programs, photos, perFrame, radiance});
         this.width = largest(p => p.width);
         this.height = largest(p => p.height);
         this.levels = 1 + Math.floor(Math.log2(Math.max(this.width, this.height)));
@@ -104,8 +104,8 @@ export class PhotoStore {
         this.color = device.texture(this.format, this.width, this.height,
                                     {levels: this.levels, layers: this.slots});
         this.depth = device.texture("R16F", depthWidth, depthHeight, {layers: this.slots});
-        this.rows = device.texture("RGBA32F", ROW_TEXELS, PER_FRAME);
-        this.rowData = new Float32Array(4 * ROW_TEXELS * PER_FRAME);
+        this.rows = device.texture("RGBA32F", ROW_TEXELS, perFrame);
+        this.rowData = new Float32Array(4 * ROW_TEXELS * perFrame);
         this.fbo = gl.createFramebuffer();
         this.clock = 0;
     }
@@ -218,9 +218,9 @@ export class PhotoStore {
     // What the gather passes are told of the photographs that this view is painted from, which it returns.
     describe(camera, typical)
     {
-        const {ready} = this;
-        const chosen = ready.length <= PER_FRAME ? ready
-            : rankPhotos(ready, camera, typical).slice(0, PER_FRAME).sort((a, b) => a.number - b.number);
+        const {ready, perFrame} = this;
+        const chosen = ready.length <= perFrame ? ready
+            : rankPhotos(ready, camera, typical).slice(0, perFrame).sort((a, b) => a.number - b.number);
         chosen.forEach((photo, i) => {
             photo.lastUse = ++this.clock;
             this.rowData.set(describePhoto(photo, camera), 4 * ROW_TEXELS * i);

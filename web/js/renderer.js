@@ -148,7 +148,8 @@ export class Renderer {
         this.shared = constants(sources);
         this.programs = makePrograms(device, sources, manifest, this.planes);
         this.focal = photos.reduce((sum, photo) => sum + photo.fx, 0) / photos.length;
-        this.photos = new PhotoStore(device, this.programs, photos, photoBytes, manifest.radiance);
+        this.photos = new PhotoStore(device, this.programs, photos, this.shared.ORL_PHOTOS_PER_FRAME, photoBytes,
+                                     manifest.radiance);
         this.soft = null; // splats, once they are loaded
         this.frame = null;
         this.exposure = 1; // factor on light

@@ -7,9 +7,8 @@
 #include "core/order.h"
 #include "render/frame/frame.h"
 #include "scene/depth_buffer.h"
+#include "shared/constants.h"
 #include "shared/penalty.h"
-
-enum { PHOTOS_PER_FRAME_MAX = 48 }; // limit of preselect
 
 bool orl_frame_may_use(const struct frame *frame, size_t photo)
 {
@@ -186,7 +185,7 @@ static enum orl_result choose_best(struct frame *frame, size_t most)
         return choose_all(frame, most);
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     size_t photo_count = frame->scene->photo_count, usable = 0;
-    most = most < PHOTOS_PER_FRAME_MAX ? most : PHOTOS_PER_FRAME_MAX;
+    most = most < ORL_PHOTOS_PER_FRAME ? most : ORL_PHOTOS_PER_FRAME;
     struct candidate *candidates = orl_array(log, photo_count, sizeof *candidates);
     double *scores = orl_array(log, photo_count, sizeof *scores);
     enum orl_result result = candidates && scores ? ORL_OK : ORL_ERR_MEMORY;
