@@ -23,10 +23,9 @@ ORL_BLOCK(splat_block)
     IVEC2(view_size);   // pixels
     INT(point_count);   // points of this chunk
     INT(first_point);   // index of the chunk's first point
-    FLOAT(splat_scale); // this and the next: the options of the same names
-    FLOAT(front_layer);
+    FLOAT(splat_scale); // the option of the same name
     FLOAT(near);        // depth nearer than which large splats are outliers
-    FLOAT(unused);
+    IVEC2(unused);
 };
 #endif
 

@@ -278,8 +278,6 @@ static void occluded_points_are_replaced(void **state)
             assert_float_equal(d.depth[at(x, y)], 10, 1e-2);
 }
 
-// Pixels that nothing wins are worked out for some point all the same, here one in the plane of
-// the eye, and what comes out is thrown away.
 // A wall without one of its splats, where a splat behind it is seen, and with a gap that shows many.
 static void a_splat_seen_through_a_gap_is_covered(void **state)
 {
@@ -312,6 +310,8 @@ static void a_splat_alone_stays(void **state)
     assert_float_equal(d.depth[at(12, 30)], 2, 1e-5);
 }
 
+// Pixels that nothing wins are worked out for some point all the same, here one in the plane of
+// the eye, and what comes out is thrown away.
 static void points_beside_the_eye_leave_no_mark(void **state)
 {
     (void)state;
