@@ -23,7 +23,7 @@ void sample_depths(ivec2 tile, int side, ivec2 size, out vec3 points[ACROSS * AC
 
 // Takes a sample point p of the tile into account (z 0: no depth there; guess: 1 where it is estimated) if
 // the photograph shows it.
-void candidate_sample(photo source, vec3 p, float guess, inout float least, inout float seen)
+void candidate_sample(photo source, vec3 p, float guess, inout float least)
 {
     vec2 pixel;
     float z;
@@ -35,15 +35,7 @@ void candidate_sample(photo source, vec3 p, float guess, inout float least, inou
         return;
     // An estimated depth may be wrong, so it does not count what hides the point there.
     bool in_sight = guess > 0.0 || photo_unhidden_share(source, photo_depths(source, pixel), z) > 0.9;
-    float hidden = in_sight ? 1.0 : 8.0;
-    least = min(least, photo_penalty(source, p) * hidden);
-    seen += 1.0 / hidden;
-}
-
-// The least penalty at any sample point, raised a little for photographs that see few points.
-float candidate_penalty(float least, float seen)
-{
-    return seen == 0.0 ? NOT_SEEN : least * (1.0 + 1.0 / max(seen, 0.1));
+    least = min(least, photo_penalty(source, p) * (in_sight ? 1.0 : 8.0));
 }
 
 // Insertion sort, best first.
@@ -74,11 +66,11 @@ void list_candidates(ivec2 tile, int side, ivec2 size, int photos, out int index
     }
     int i = 0;
     do { // the condition comes last: see tiled.comp
-        float least = NOT_SEEN, seen = 0.0;
+        float least = NOT_SEEN; // penalty at any sample point
         photo source = photo_at(i);
         for (int s = 0; s < ACROSS * ACROSS; s++)
-            candidate_sample(source, points[s], guess[s], least, seen);
-        candidate_insert(candidate_penalty(least, seen), i, best, index);
+            candidate_sample(source, points[s], guess[s], least);
+        candidate_insert(least, i, best, index);
         i++;
     } while (i < photos);
 }

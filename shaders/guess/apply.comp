@@ -25,7 +25,7 @@ void main()
         ivec2 at = CELL * cell + ivec2(k % CELL, k / CELL);
         float depth = imageLoad(view_depth, at).r; // 0 outside
         if (depth < 0.0 && own < 1.0)
-            imageStore(view_depth, at, vec4(moved(at, depth, own)));
+            imageStore(view_depth, at, vec4(moved(at, depth)));
         k++;
     } while (k < pixels);
 }

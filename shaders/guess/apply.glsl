@@ -1,22 +1,19 @@
-// Moves the estimated background depth of an open cell to where it was picked, no farther than the
-// ground; for the renderer and for the page. Between cells that were moved by about as much it is
-// interpolated. The file that includes this one defines
+// Moves the estimated background depth of an open cell to where it was picked, interpolated between cells,
+// no farther than the ground; for the renderer and for the page. The file that includes this one defines
 //   float share_of(ivec2 cell): picked share of inverse depth; 1: unmoved; outside: of the nearest cell;
 // and min_inverse, the inverse depth of the farthest estimate.
 
-const float SAME = 0.2; // difference of shares
-
-// depth: of the pixel, < 0; own: the share of its cell, < 1.
-float moved(ivec2 at, float depth, float own)
+// depth: of the pixel, < 0.
+float moved(ivec2 at, float depth)
 {
     vec2 place = (vec2(at) + 0.5) / float(CELL) - 0.5, part = fract(place);
-    vec2 sum = vec2(own, 1.0) * 1e-6;
+    float share = 0.0;
     for (int k = 0; k < 4; k++) {
         float other = share_of(ivec2(floor(place)) + ivec2(k & 1, k >> 1));
         float weight = ((k & 1) == 0 ? 1.0 - part.x : part.x) * (k < 2 ? 1.0 - part.y : part.y);
-        sum += abs(other - own) < SAME ? vec2(other, 1.0) * weight : vec2(0.0);
+        share += other * weight;
     }
     float on_ground = dot(ground.xyz, vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0));
-    float inverse = max(sum.x / sum.y / -depth, min_inverse);
+    float inverse = max(share / -depth, min_inverse);
     return -1.0 / max(inverse, on_ground > ground.w ? on_ground : 0.0);
 }

@@ -1,8 +1,5 @@
-// The plane of least cost of an open cell, if it costs clearly less than the estimate; for the renderer and for the page.
+// The plane of least cost of an open cell, for the renderer and for the page.
 #include "guess/planes.glsl"
-
-// Least gain, of the sum over four directions.
-const float CLEARLY = 0.3;
 
 // Share of the estimate's inverse depth; sums: of the costs of the paths that end at each plane.
 float picked_share(float sums[PLANES])
@@ -13,5 +10,5 @@ float picked_share(float sums[PLANES])
         best = sums[k] < least ? k : best;
         least = min(least, sums[k]);
     }
-    return sums[0] - least > CLEARLY ? plane_share(best) : 1.0;
+    return plane_share(best);
 }

@@ -113,7 +113,7 @@ static void photographs_tell_the_depth_behind_an_opening(void **state)
     (void)state;
     double rim = error_with(around, 0, BEHIND_Z), tried = error_with(around, 16, BEHIND_Z);
     check_better(rim, tried);
-    assert_true(tried < 0.3 * rim); // neighbours help: a third where each cell is alone
+    assert_true(tried < 0.35 * rim); // neighbours help: a cell alone is farther off
 }
 
 // From far aside the wall hides the squares in the middle. What these photographs show instead is no

@@ -18,5 +18,5 @@ void main()
     float own = share_of(at / CELL);
     depth = texelFetch(view_depth, at, 0).x;
     if (depth < 0.0 && own < 1.0)
-        depth = moved(at, depth, own);
+        depth = moved(at, depth);
 }
