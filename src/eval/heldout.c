@@ -121,7 +121,7 @@ enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer 
 {
     struct orl_frame frame = {0};
     struct orl_render_params params = *render;
-    params.leave_out |= ORL_LAYER_NORMAL | ORL_LAYER_DEPTH;
+    params.leave_out |= coverage ? ORL_LAYER_NORMAL | ORL_LAYER_DEPTH : ~0u;
     *picture = (struct orl_image){0};
     if (coverage)
         *coverage = (struct orl_image){0};
@@ -132,21 +132,5 @@ enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer 
         frame.coverage = (struct orl_image){0};
     }
     orl_frame_finish(&frame);
-    return result;
-}
-
-enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
-                                    const struct orl_scene *scene,
-                                    const struct orl_heldout *heldout,
-                                    const struct orl_render_params *render, const bool *skip,
-                                    double *psnr_db, double *ssim)
-{
-    struct orl_image picture;
-    enum orl_result result = orl_heldout_draw(log, renderer, scene, heldout, render, skip, &picture, NULL);
-    if (result == ORL_OK) {
-        *psnr_db = orl_metrics_psnr_db(&picture, &heldout->picture);
-        result = orl_metrics_ssim(log, &picture, &heldout->picture, ssim);
-    }
-    orl_image_finish(&picture);
     return result;
 }

@@ -41,19 +41,12 @@ enum orl_result orl_heldout_expose(const struct orl_log *log, const struct orl_s
 
 // Renders the photograph's view without the photographs that `skip` marks (NULL: none), as
 // orl_renderer_draw does, and makes of it what the photograph's camera would show: *picture as of
-// orl_heldout_expose. *coverage (NULL: not wanted) is that of the frame. Both are empty after a failure.
+// orl_heldout_expose. `scene` is the one that the photograph was loaded from; the renderer may draw
+// another of the same place. *coverage (NULL: not wanted) is that of the frame. Both are empty after a failure.
 enum orl_result orl_heldout_draw(const struct orl_log *log, struct orl_renderer *renderer,
                                  const struct orl_scene *scene, const struct orl_heldout *heldout,
                                  const struct orl_render_params *render, const bool *skip,
                                  struct orl_image *picture,
                                  struct orl_image *coverage) ORL_CHECK_RESULT;
-// Draws in the same way and compares the picture with the photograph. `scene` is the one that the
-// photograph was loaded from; the renderer may draw another of the same place. The other figures of
-// struct orl_metrics take longer than a fast frame.
-enum orl_result orl_heldout_compare(const struct orl_log *log, struct orl_renderer *renderer,
-                                    const struct orl_scene *scene,
-                                    const struct orl_heldout *heldout,
-                                    const struct orl_render_params *render, const bool *skip,
-                                    double *psnr_db, double *ssim) ORL_CHECK_RESULT;
 
 #endif

@@ -197,7 +197,8 @@ static enum orl_result find_share(const struct refine *r, struct orl_renderer *r
     size_t best = 0;
     for (size_t i = 0; result == ORL_OK && i <= count; i++) {
         *option = i ? SHARES[i - 1] : 0;
-        result = orl_score_measure(r->log, renderer, checks, render, r->params->progress, &scores[i]);
+        result = orl_score_measure(r->log, renderer, checks, checks->count, render, NULL, r->params->progress,
+                                   &scores[i]);
         if (result == ORL_OK && scores[i].psnr_db > scores[best].psnr_db &&
             orl_score_better(&scores[i], &scores[0], GAIN_DB))
             best = i;

@@ -46,8 +46,8 @@ static enum orl_result try_choice(struct orl_search *s, const struct orl_choice 
     struct orl_score score = {0};
     double done = (double)s->trial_count, total = fmax(s->planned, done + 1);
     orl_progress_report(s->params.progress, "search", done, total, trial->key);
-    ORL_TRY(orl_score_measure(s->log, s->renderer, &s->validation, &choice->params, s->params.progress,
-                              &score));
+    ORL_TRY(orl_score_measure(s->log, s->renderer, &s->validation, s->validation.count, &choice->params, NULL,
+                              s->params.progress, &score));
     trial->psnr_db = score.psnr_db;
     trial->ssim = score.ssim;
     trial->kept = !s->score.count || orl_score_better(&score, &s->score, s->params.gain_db);
@@ -176,8 +176,8 @@ enum orl_result orl_search_backdrop(const struct orl_log *log, struct orl_render
                                                  &validation);
     for (int rests = 0; rests < 2; rests++) {
         scene->backdrop_rests = rests;
-        ORL_THEN(result, orl_score_measure(log, renderer, &validation, &choice->params, params->progress,
-                                           &scores[rests]));
+        ORL_THEN(result, orl_score_measure(log, renderer, &validation, validation.count, &choice->params, NULL,
+                                           params->progress, &scores[rests]));
     }
     scene->backdrop_rests = result == ORL_OK && orl_score_better(&scores[1], &scores[0], params->gain_db);
     orl_score_finish(&scores[0]);

@@ -9,8 +9,9 @@
 #include "core/memory.h"
 #include "core/new_dir.h"
 #include "core/process.h"
-#include "eval/trim_search.h"
+#include "eval/eval.h"
 #include "eval/search.h"
+#include "eval/trim_search.h"
 
 enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
 enum { DECIDING_MAX = 48 }; // targets that decide on a step; all confirm the whole
@@ -19,47 +20,29 @@ static const double tuned_gain = 0.1;
 // Share of the time that tuning may take.
 static const double tuned_time = 0.2;
 
-// --- the held-out photographs ---
-
-static enum orl_result compare_held(struct trim_search *s, struct orl_renderer *renderer,
-                                    const struct orl_render_params *render,
-                                    struct orl_trim_figures *figures)
-{
-    const struct orl_scene *scene = s->scene;
-    size_t held = orl_heldout_count(scene);
-    enum orl_result result = ORL_OK;
-    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
-        struct orl_heldout view = {0};
-        double psnr_db = 0, ssim = 0;
-        if (!scene->photos[i].test)
-            continue;
-        result = orl_heldout_load(s->log, scene, i, s->params->size_divide, &view);
-        ORL_THEN(result, orl_heldout_compare(s->log, renderer, scene, &view, render, NULL, &psnr_db,
-                                             &ssim));
-        figures->held_psnr_db += psnr_db / (double)held;
-        figures->held_ssim += ssim / (double)held;
-        orl_heldout_finish(&view);
-    }
-    return result;
-}
-
 // Opens a scene as every command does. Held-out photographs are compared with it, and what it takes
 // on the device is counted.
-static enum orl_result look_at(struct trim_search *s, const char *dir,
-                               const struct orl_render_params *render,
+static enum orl_result look_at(struct trim_search *s, const char *dir, const struct orl_choice *choice,
                                struct orl_trim_figures *figures)
 {
+    const struct orl_eval_params params = {.choice = choice, .divide = s->params->size_divide,
+                                           .progress = s->params->progress};
     struct orl_scene *scene = NULL;
     struct orl_renderer *renderer = NULL;
+    struct orl_eval eval = {0};
     enum orl_result result = orl_scene_open(s->log, dir, &scene);
     ORL_THEN(result, orl_renderer_create(s->gpu, scene, NULL, &renderer));
-    ORL_THEN(result, compare_held(s, renderer, render, figures));
-    ORL_THEN(result, orl_renderer_draw(renderer, &s->targets.views[0].view, render, NULL, NULL));
+    if (result == ORL_OK && orl_heldout_count(scene) > 0)
+        result = orl_eval_run(s->gpu, renderer, scene, &params, &eval);
+    figures->held_psnr_db = eval.mean.metrics.psnr_db;
+    figures->held_ssim = eval.mean.metrics.ssim;
+    ORL_THEN(result, orl_renderer_draw(renderer, &s->targets.views[0].view, &choice->params, NULL, NULL));
     if (result == ORL_OK) {
         orl_trim_count_bytes(s->gpu, &figures->point_bytes, &figures->photo_bytes);
         figures->device_bytes = orl_gpu_bytes(s->gpu);
         figures->file_bytes = orl_trim_scene_file_bytes(scene);
     }
+    orl_eval_finish(&eval);
     orl_renderer_destroy(&renderer);
     orl_scene_destroy(&scene);
     return result;
@@ -67,15 +50,28 @@ static enum orl_result look_at(struct trim_search *s, const char *dir,
 
 // --- the whole ---
 
+// Moves `count` of the first `all` targets, evenly chosen, to the front.
+static void move_to_front(struct orl_heldout *targets, size_t count, size_t all)
+{
+    for (size_t i = 0; i < count; i++) {
+        const size_t from = (2 * i + 1) * all / (2 * count);
+        const struct orl_heldout moved = targets[from];
+        targets[from] = targets[i];
+        targets[i] = moved;
+    }
+}
+
 static enum orl_result start(struct trim_search *s)
 {
     const struct orl_trim_params *p = s->params;
     ORL_TRY(orl_validation_load(s->log, s->scene, 0, p->size_divide, &s->targets));
     s->deciding_count = s->targets.count < DECIDING_MAX ? s->targets.count : DECIDING_MAX;
     s->validation_count = (size_t)p->views < s->deciding_count ? (size_t)p->views : s->deciding_count;
+    move_to_front(s->targets.views, s->deciding_count, s->targets.count);
+    move_to_front(s->targets.views, s->validation_count, s->deciding_count);
     s->most = orl_trim_has_budget(s)
-                  ? (struct trim_loss){INFINITY, INFINITY, INFINITY}
-                  : (struct trim_loss){p->tolerance_db, p->tolerance_ssim, p->worst_db};
+                  ? (struct orl_score_loss){INFINITY, INFINITY, INFINITY}
+                  : (struct orl_score_loss){p->tolerance_db, p->tolerance_ssim, p->worst_db};
     ORL_TRY(orl_point_ranking_make(s->gpu, s->scene, RANKED_VIEWS, p->progress, &s->ranking));
     ORL_TRY(orl_trim_order_photos(s));
     ORL_TRY(orl_trim_state_begin(s, ORL_TRIM_OPTION, &s->first));
@@ -98,7 +94,8 @@ static enum orl_result tune(struct trim_search *s)
         .progress = p->progress};
     enum orl_result result = orl_search_run(s->gpu, orl_trim_model_of(s->now)->renderer, s->scene,
                                             &params, p->start, NULL, &search);
-    ORL_THEN(result, orl_trim_take_options(s, &search.best.params));
+    s->tuned = search.best.params;
+    ORL_THEN(result, orl_trim_take_tuned(s));
     orl_search_finish(&search);
     return result;
 }
@@ -111,8 +108,8 @@ static enum orl_result write_and_look(struct trim_search *s)
     ORL_TRY(orl_trim_write_scene(s->log, &orl_trim_model_of(s->now)->scene, s->now->removed, &trim->choice, s->part));
     orl_trim_models_close(s->now); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
-    ORL_TRY(look_at(s, s->scene->dir, &s->first->render, &trim->before));
-    return look_at(s, s->part, &s->now->render, &trim->after);
+    ORL_TRY(look_at(s, s->scene->dir, s->params->start, &trim->before));
+    return look_at(s, s->part, &trim->choice, &trim->after);
 }
 
 static enum orl_result run(struct trim_search *s)

@@ -43,14 +43,9 @@ static const struct rung ladder[] = {
     {ORL_TRIM_POINTS, TRIM_POINT_LEVELS - 1, 1},
     {ORL_TRIM_OPTION, ORL_COUNT(cheaper), 1},
 };
-static const struct rung *const options = &ladder[ORL_COUNT(ladder) - 1];
+static const struct rung *const textures = &ladder[1], *const options = &ladder[ORL_COUNT(ladder) - 1];
 
 // --- levels ---
-
-size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count)
-{
-    return (2 * i + 1) * s->targets.count / (2 * count);
-}
 
 // The last level that the scene allows.
 static size_t max_level(const struct trim_search *s, const struct rung *rung)
@@ -87,13 +82,20 @@ static bool set_level(const struct trim_search *s, size_t level, struct trim_sta
         snprintf(t->step.what, SIZE, "points %.3g %%", 100 * orl_trim_point_shares[level]);
         return true;
     case ORL_TRIM_TEXTURES:
-        snprintf(t->step.what, SIZE, "textures %s", orl_textures_names[level]);
-        return level >= ORL_TEXTURES_YCC && orl_textures_available(s->gpu, (enum orl_textures)level);
+        snprintf(t->step.what, SIZE, "textures %s",
+                 level == ORL_TEXTURES_AUTO ? "as they were" : orl_textures_names[level]);
+        return level == ORL_TEXTURES_AUTO ||
+               (level >= ORL_TEXTURES_YCC && orl_textures_available(s->gpu, (enum orl_textures)level));
     case ORL_TRIM_DEPTH:
         defaults = orl_trim_defaults(s, t);
         snprintf(t->step.what, SIZE, "depth 1/%d, %d bits", defaults.depth_divide, defaults.depth_half ? 16 : 32);
         return true;
     case ORL_TRIM_OPTION:
+        if (level == 0) {
+            t->render = s->tuned;
+            snprintf(t->step.what, SIZE, "tuned options");
+            return true;
+        }
         snprintf(t->step.what, SIZE, "%s", cheaper[level - 1]);
         return set_option(cheaper[level - 1], t);
     default:
@@ -129,29 +131,42 @@ static bool is_spent(const struct trim_search *s, double share)
     return s->params->budget_s > 0 && orl_time_s() - s->start_s >= share * s->params->budget_s;
 }
 
+// Whether the step loses no more than it may. The level 0 of options is the tuned ones, which must be
+// better, and that of textures makes frames faster again at any price.
+static bool is_allowed(const struct trim_search *s, const struct trim_state *t, double share)
+{
+    bool special = t->level[t->step.part] == 0;
+    if (special && t->step.part == ORL_TRIM_TEXTURES)
+        return true;
+    return orl_trim_fits(s, &t->loss, share) && (!special || orl_score_better(&t->score, &s->now->score, 0));
+}
+
 // Whether the step saves what is wanted: bytes, or time by options; towards a budget, what is above it.
 static bool is_wanted(const struct trim_search *s, const struct trim_state *t)
 {
     bool smaller = t->step.bytes < s->now->step.bytes, faster = t->slower < s->now->slower;
+    bool option = t->step.part == ORL_TRIM_OPTION;
+    if (t->level[t->step.part] == 0)
+        return !option || t->slower <= orl_trim_slow_limit(s);
     if (orl_trim_has_budget(s))
         return (!has_bytes(s) && smaller) || (!has_time(s) && faster);
-    return t->step.part == ORL_TRIM_OPTION ? faster : smaller;
+    return option ? faster : smaller;
 }
 
 // --- steps ---
 
-// Takes the measured state if it fits and is wanted. What loses too much to be taken is not timed, and
+// Takes the measured state if it is allowed and wanted. What loses too much to be taken is not timed, and
 // fewer points and smaller maps make no frame slower.
 static enum orl_result decide(struct trim_search *s, struct trim_state **trial, double share, bool *taken)
 {
     struct trim_state *t = *trial;
-    bool fits = orl_trim_fits(s, &t->loss, share);
+    bool allowed = is_allowed(s, t, share);
     bool slows = t->step.part == ORL_TRIM_TEXTURES || t->step.part == ORL_TRIM_OPTION;
-    if (fits && (slows || s->params->max_frame_ms > 0))
+    if (allowed && (slows || s->params->max_frame_ms > 0))
         ORL_TRY(orl_trim_time_trial(s, t));
-    *taken = fits && is_wanted(s, t);
+    *taken = allowed && is_wanted(s, t);
     orl_logf(s->log, ORL_LOG_DEBUG, "%s: loses %.3f dB, SSIM %.4f; in all %.3f dB, the worst %.3f dB%s",
-             t->step.what, t->step.loss_db, t->step.loss_ssim, t->loss.db, t->loss.worst_db,
+             t->step.what, t->step.loss_db, t->step.loss_ssim, t->loss.psnr_db, t->loss.worst_db,
              *taken ? ": taken" : "");
     return *taken ? orl_trim_take(s, trial) : ORL_OK;
 }
@@ -220,11 +235,11 @@ enum orl_result orl_trim_climb(struct trim_search *s)
     if (!orl_trim_has_budget(s))
         return climb_ladder(s);
     for (double db = budget_first_db; !ends(s) && db < budget_last_db; db *= budget_growth) {
-        s->most.db = db;
+        s->most.psnr_db = db;
         s->most.ssim = ssim_per_db * db;
         ORL_TRY(climb_ladder(s));
     }
-    s->most.db = s->most.ssim = INFINITY; // nothing is taken back
+    s->most.psnr_db = s->most.ssim = INFINITY; // nothing is taken back
     if (s->trim->complete && !within_budget(s))
         return orl_fail(s->log, ORL_ERR_DATA,
                         "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
@@ -233,55 +248,23 @@ enum orl_result orl_trim_climb(struct trim_search *s)
     return ORL_OK;
 }
 
-// --- the time of a frame ---
-
-// Compressed textures are what makes a frame slower.
-static enum orl_result drop_textures(struct trim_search *s)
-{
-    struct trim_state *t;
-    enum orl_result result = orl_trim_state_begin(s, ORL_TRIM_TEXTURES, &t);
-    if (result == ORL_OK) {
-        t->level[ORL_TRIM_TEXTURES] = ORL_TEXTURES_AUTO;
-        snprintf(t->step.what, sizeof t->step.what, "textures as they were");
-        result = orl_trim_measure(s, t);
-    }
-    ORL_THEN(result, orl_trim_take(s, &t));
-    orl_trim_state_destroy(&t);
-    return result;
-}
-
 enum orl_result orl_trim_make_faster(struct trim_search *s)
 {
-    bool slow;
+    bool slow, taken;
     ORL_TRY(orl_trim_time_whole(s, &slow));
     if (slow) {
         ORL_TRY(climb_rung(s, options, true));
         ORL_TRY(orl_trim_time_whole(s, &slow));
     }
     if (slow && s->now->level[ORL_TRIM_TEXTURES] != ORL_TEXTURES_AUTO) {
-        ORL_TRY(drop_textures(s));
+        ORL_TRY(try_level(s, textures, ORL_TEXTURES_AUTO, &taken));
         ORL_TRY(orl_trim_time_whole(s, &slow));
     }
     return ORL_OK;
 }
 
-// --- tuned options ---
-
-enum orl_result orl_trim_take_options(struct trim_search *s,
-                                      const struct orl_render_params *render)
+enum orl_result orl_trim_take_tuned(struct trim_search *s)
 {
-    struct trim_state *t;
-    enum orl_result result = orl_trim_state_begin(s, ORL_TRIM_OPTION, &t);
-    if (result == ORL_OK) {
-        t->render = *render;
-        snprintf(t->step.what, sizeof t->step.what, "tuned options");
-        result = orl_trim_measure(s, t);
-    }
-    bool better = result == ORL_OK && t->step.loss_db < 0 && orl_trim_fits(s, &t->loss, 1);
-    if (better)
-        result = orl_trim_time_trial(s, t);
-    if (better && result == ORL_OK && t->slower <= orl_trim_slow_limit(s))
-        result = orl_trim_take(s, &t);
-    orl_trim_state_destroy(&t);
-    return result;
+    bool taken;
+    return try_level(s, options, 0, &taken);
 }

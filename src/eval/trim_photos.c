@@ -20,9 +20,24 @@ static double apart(const struct trim_search *s, size_t a, size_t b)
                                 s->targets.views[b].photo);
 }
 
+// The target nearest to another one, but not `but`, of those whose photographs are removed or of those
+// whose are left; the number of targets: there is none.
+static size_t nearest(const struct trim_search *s, const bool *removed, bool is_removed, size_t target, size_t but)
+{
+    size_t found = s->targets.count;
+    double least = INFINITY;
+    for (size_t i = 0; i < s->targets.count; i++) {
+        if (i == target || i == but || removed[s->targets.views[i].photo] != is_removed || apart(s, target, i) >= least)
+            continue;
+        least = apart(s, target, i);
+        found = i;
+    }
+    return found;
+}
+
 // The targets nearest to a target whose photographs are left, the nearest first.
 struct neighbours {
-    size_t target[NEAREST]; // the target itself: there are fewer
+    size_t target[NEAREST]; // the number of targets: there are fewer
     double sum;             // of their distances
 };
 
@@ -30,22 +45,10 @@ static struct neighbours nearest_left(const struct trim_search *s, const bool *r
                                       size_t target)
 {
     struct neighbours n = {.target = {target, target}};
-    double distance[NEAREST] = {INFINITY, INFINITY};
-    for (size_t i = 0; i < s->targets.count; i++) {
-        if (i == target || removed[s->targets.views[i].photo])
-            continue;
-        double d = apart(s, target, i);
-        if (d < distance[0]) {
-            distance[1] = distance[0];
-            n.target[1] = n.target[0];
-            distance[0] = d;
-            n.target[0] = i;
-        } else if (d < distance[1]) {
-            distance[1] = d;
-            n.target[1] = i;
-        }
+    for (int k = 0; k < NEAREST; k++) {
+        n.target[k] = nearest(s, removed, false, target, n.target[0]);
+        n.sum += n.target[k] < s->targets.count ? apart(s, target, n.target[k]) : INFINITY;
     }
-    n.sum = distance[0] + distance[1];
     return n;
 }
 
@@ -78,34 +81,23 @@ enum orl_result orl_trim_order_photos(struct trim_search *s)
 
 // --- views beside photographs that go ---
 
-static enum orl_result draw_srgb(struct trim_search *s, const struct orl_view *view, const bool *removed,
-                                 struct orl_image *picture)
-{
-    struct orl_frame frame = {0};
-    struct orl_render_params render = s->now->render;
-    render.leave_out = ~0u;
-    enum orl_result result =
-        orl_progress_cancelled(s->params->progress)
-            ? ORL_ERR_CANCELLED
-            : orl_renderer_draw(orl_trim_model_of(s->now)->renderer, view, &render, removed, &frame);
-    ORL_THEN(result, orl_tone_srgb(s->log, &frame.color, picture));
-    orl_frame_finish(&frame);
-    return result;
-}
-
 // How far a view half way to a neighbour changes when photographs go, in dB of PSNR: their squared
 // difference adds to the squared error that a rendering there has anyway, which is taken to be that
 // of the photograph's own view.
 static enum orl_result between_loss(struct trim_search *s, const bool *removed, size_t target,
                                     size_t other, double *loss_db)
 {
-    const struct orl_view view = orl_view_interpolate(&s->targets.views[target].view,
-                                                      &s->targets.views[other].view, 0.5);
+    struct orl_renderer *renderer = orl_trim_model_of(s->now)->renderer;
+    const struct orl_render_params *render = &s->now->render;
+    struct orl_heldout between = s->targets.views[target];
     struct orl_image with = {0}, without = {0};
-    enum orl_result result = draw_srgb(s, &view, NULL, &with);
-    ORL_THEN(result, draw_srgb(s, &view, removed, &without));
+    between.view = orl_view_interpolate(&between.view, &s->targets.views[other].view, 0.5);
+    if (orl_progress_cancelled(s->params->progress))
+        return ORL_ERR_CANCELLED;
+    enum orl_result result = orl_heldout_draw(s->log, renderer, &s->targets.scene, &between, render, NULL, &with, NULL);
+    ORL_THEN(result, orl_heldout_draw(s->log, renderer, &s->targets.scene, &between, render, removed, &without, NULL));
     if (result == ORL_OK)
-        *loss_db = 10 * log10(1 + pow(10, 0.1 * (s->first->score[target].db -
+        *loss_db = 10 * log10(1 + pow(10, 0.1 * (s->first->score.views[target][0] -
                                                  orl_metrics_psnr_db(&with, &without))));
     orl_image_finish(&with);
     orl_image_finish(&without);
@@ -127,7 +119,7 @@ static enum orl_result put_back_beside(struct trim_search *s, struct trim_state 
             continue;
         struct neighbours near = nearest_left(s, state->removed, i);
         for (int k = 0; k < NEAREST && loss <= between_max_db; k++)
-            if (near.target[k] != i)
+            if (near.target[k] < s->targets.count)
                 ORL_TRY(between_loss(s, state->removed, i, near.target[k], &loss));
         if (loss > between_max_db)
             put_back(state, photo);
@@ -135,32 +127,20 @@ static enum orl_result put_back_beside(struct trim_search *s, struct trim_state 
     return ORL_OK;
 }
 
-// The target of a removed photograph that is nearest to a view; the number of targets: none is.
-static size_t nearest_removed(const struct trim_search *s, const struct trim_state *state,
-                              size_t view)
-{
-    size_t found = s->targets.count;
-    for (size_t i = 0; i < s->targets.count; i++)
-        if (i != view && state->removed[s->targets.views[i].photo] &&
-            (found == s->targets.count || apart(s, view, i) < apart(s, view, found)))
-            found = i;
-    return found;
-}
-
 // Puts back what measured views need that lose too much; the state then has to be measured again.
 // False: there are none.
 static bool mend(const struct trim_search *s, struct trim_state *t)
 {
     bool mended = false;
-    for (size_t v = 0; v < s->targets.count; v++) {
-        size_t near = nearest_removed(s, t, v);
-        if (near == s->targets.count || !(s->first->score[v].db - t->score[v].db > s->most.worst_db))
+    for (size_t v = 0; v < t->score.count; v++) {
+        size_t near = nearest(s, t->removed, true, v, v);
+        if (near == s->targets.count || t->score.views[v][0] >= s->first->score.views[v][0] - s->most.worst_db)
             continue;
         put_back(t, s->targets.views[near].photo);
         mended = true;
     }
-    for (size_t v = 0; mended && v < s->targets.count; v++)
-        t->score[v] = (struct trim_score){NAN, NAN};
+    if (mended)
+        orl_score_finish(&t->score);
     return mended;
 }
 

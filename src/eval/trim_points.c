@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/order.h"
 #include "core/vec3.h"
 #include "eval/validation.h"
 #include "render/proxy/importance.h"
@@ -133,30 +134,17 @@ static void set_levels(const struct ranker *r, const struct orl_nearest_points *
             }
 }
 
-struct rank {
-    uint32_t level, pixels, point;
-};
-
-static int compare_ranks(const void *a, const void *b)
-{
-    const struct rank *x = a, *y = b;
-    if (x->level != y->level)
-        return x->level > y->level ? -1 : 1;
-    if (x->pixels != y->pixels)
-        return x->pixels > y->pixels ? -1 : 1;
-    return (x->point > y->point) - (x->point < y->point);
-}
-
+// By level, then by pixels, the greatest first.
 static enum orl_result sort(const struct orl_log *log, const struct ranker *r)
 {
     struct orl_point_ranking *ranking = r->ranking;
-    struct rank *ranks = orl_array(log, ranking->count, sizeof *ranks);
+    struct orl_ranked *ranks = orl_array(log, ranking->count, sizeof *ranks);
     ORL_TRY_MEMORY(ranks);
     for (size_t i = 0; i < ranking->count; i++)
-        ranks[i] = (struct rank){r->level[i], ranking->pixels[i], (uint32_t)i};
-    qsort(ranks, ranking->count, sizeof *ranks, compare_ranks);
+        ranks[i] = (struct orl_ranked){-(ldexp(r->level[i], 32) + ranking->pixels[i]), i};
+    qsort(ranks, ranking->count, sizeof *ranks, orl_order_ranked);
     for (size_t i = 0; i < ranking->count; i++)
-        ranking->order[i] = ranks[i].point;
+        ranking->order[i] = (uint32_t)ranks[i].index;
     free(ranks);
     return ORL_OK;
 }

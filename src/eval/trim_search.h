@@ -10,17 +10,6 @@
 enum { TRIM_POINT_LEVELS = 25, TRIM_DEPTH_LEVELS = 5 };
 extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
 
-// How well a view is rendered.
-struct trim_score {
-    double db, ssim;
-};
-
-// What a state loses against another: means over the views measured, and the greatest loss of one of
-// them.
-struct trim_loss {
-    double db, ssim, worst_db;
-};
-
 // A scene in a state, ready to render.
 struct trim_model {
     struct orl_scene scene; // shares what does not change with the search's scene
@@ -33,7 +22,7 @@ struct trim_model {
 // the one before, or one that is on trial.
 struct trim_state {
     struct trim_state *before; // owned by the search; NULL: this is the whole scene
-    struct trim_model *model;  // owned; NULL: that of the state before serves
+    struct trim_model model;   // without a renderer: that of the state before serves
     bool shares;               // it does
     struct orl_trim_step step; // that made it
     // How small each part is; 0: as in the scene. Of textures an enum orl_textures; of depth maps n for
@@ -41,11 +30,11 @@ struct trim_state {
     // have come back.
     size_t level[ORL_TRIM_PART_COUNT];
     struct orl_render_params render;
-    bool *removed;           // per photograph, behind the scores
     size_t removed_count;
-    struct trim_loss loss;   // against the whole scene
-    double slower;           // the time of a frame, as a multiple of the whole scene's
-    struct trim_score score[]; // per target; NAN: not measured
+    struct orl_score score;      // by the search's targets
+    struct orl_score_loss loss;  // against the whole scene
+    double slower;               // the time of a frame, as a multiple of the whole scene's
+    bool removed[];              // per photograph
 };
 
 struct trim_search {
@@ -56,18 +45,18 @@ struct trim_search {
     struct orl_trim *trim;
     const char *part; // the folder that becomes params->out when it is whole
     struct orl_point_ranking ranking;
-    struct orl_validation targets; // all training photographs
+    // All training photographs, those that look at a step first before the others that decide on it.
+    struct orl_validation targets;
     size_t validation_count; // targets that look at a step first
-    size_t deciding_count;   // targets that decide on it then
+    size_t deciding_count;   // targets that decide on it then, with these
     size_t *order;           // owned: targets in the order in which their photographs go
-    struct trim_loss most;   // the tolerances at this time; they grow towards a budget
+    struct orl_score_loss most; // the tolerances at this time; they grow towards a budget
     struct trim_state *first, *now; // owned, with all between them
+    struct orl_render_params tuned; // options that may serve better
     double first_ms;
     double start_s;
 };
 
-// The i-th of `count` targets, evenly chosen.
-size_t orl_trim_validation_view(const struct trim_search *s, size_t i, size_t count);
 bool orl_trim_has_budget(const struct trim_search *s);
 
 // --- trim_state.c ---
@@ -93,13 +82,23 @@ double orl_trim_model_bytes(const struct trim_search *s, const struct trim_state
 // first, and by all that decide unless the first lose far more than is allowed.
 enum orl_result orl_trim_measure(struct trim_search *s, struct trim_state *t) ORL_CHECK_RESULT;
 // Whether the losses are within the tolerances, of which the step may use this share of what is left.
-bool orl_trim_fits(const struct trim_search *s, const struct trim_loss *loss, double share);
+bool orl_trim_fits(const struct trim_search *s, const struct orl_score_loss *loss, double share);
 // The state on trial becomes the search's, and its step is reported. *t is NULL then.
 enum orl_result orl_trim_take(struct trim_search *s, struct trim_state **t) ORL_CHECK_RESULT;
-// Measures all targets in the search's state.
+// Measures the targets that the search's state lacks.
 enum orl_result orl_trim_measure_all(struct trim_search *s, struct orl_trim_figures *figures) ORL_CHECK_RESULT;
 // Measures all targets, and takes the last steps back until they are within the tolerances.
 enum orl_result orl_trim_confirm(struct trim_search *s) ORL_CHECK_RESULT;
+
+// In the end a frame may take so many times as long as the whole scene's.
+double orl_trim_slow_limit(const struct trim_search *s);
+// Times frames of the whole scene, which the search begins with: first_ms.
+enum orl_result orl_trim_time_first(struct trim_search *s) ORL_CHECK_RESULT;
+// Compares frames of a state on trial with those of the state before: `slower`.
+enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_state *t) ORL_CHECK_RESULT;
+// Compares frames of the search's state with those of the whole scene, for the report. slow: they are
+// clearly slower than they may be.
+enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow) ORL_CHECK_RESULT;
 
 // --- trim_ladder.c ---
 
@@ -109,9 +108,8 @@ enum orl_result orl_trim_climb(struct trim_search *s) ORL_CHECK_RESULT;
 // Makes a frame that takes longer than it may faster: by cheaper options, or without compressed
 // textures.
 enum orl_result orl_trim_make_faster(struct trim_search *s) ORL_CHECK_RESULT;
-// Takes other options for the method if the deciding targets do not lose by it.
-enum orl_result orl_trim_take_options(struct trim_search *s,
-                                      const struct orl_render_params *render) ORL_CHECK_RESULT;
+// Takes the search's tuned options if they are better by the targets that decide.
+enum orl_result orl_trim_take_tuned(struct trim_search *s) ORL_CHECK_RESULT;
 
 // --- trim_photos.c ---
 
@@ -123,18 +121,6 @@ enum orl_result orl_trim_order_photos(struct trim_search *s) ORL_CHECK_RESULT;
 // than one may come back, too.
 enum orl_result orl_trim_remove_photos(struct trim_search *s, size_t count,
                                        struct trim_state *t) ORL_CHECK_RESULT;
-
-// --- trim_time.c ---
-
-// In the end a frame may take so many times as long as the whole scene's.
-double orl_trim_slow_limit(const struct trim_search *s);
-// Times frames of the whole scene, which the search begins with: first_ms.
-enum orl_result orl_trim_time_first(struct trim_search *s) ORL_CHECK_RESULT;
-// Compares frames of a state on trial with those of the state before: `slower`.
-enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_state *t) ORL_CHECK_RESULT;
-// Compares frames of the search's state with those of the whole scene, for the report. slow: they are
-// clearly slower than they may be.
-enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow) ORL_CHECK_RESULT;
 
 // --- trim_write.c ---
 

@@ -1,10 +1,12 @@
 // States of a trimmed scene: the models that they are drawn with, what they lose against the whole
-// scene, and which are taken.
+// scene, how long their frames take, and which are taken.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/process.h"
+#include "eval/timing.h"
 #include "eval/trim_search.h"
 
 const double orl_trim_point_shares[TRIM_POINT_LEVELS] = {
@@ -40,63 +42,38 @@ void orl_trim_count_bytes(const struct orl_gpu *gpu, size_t *points, size_t *pho
     }
 }
 
-// Draws a small frame, since depth maps and masks of photographs take memory only once a method has
-// asked for them.
-static enum orl_result draw_first_frame(const struct trim_search *s, const struct trim_state *state)
-{
-    enum { SIDE = 64 };
-    const struct orl_scene *scene = &state->model->scene;
-    size_t photo = 0;
-    while (photo + 1 < scene->photo_count && (scene->photos[photo].test || state->removed[photo]))
-        photo++;
-    struct orl_view view = scene->photos[photo].view;
-    struct orl_render_params render = state->render;
-    render.leave_out = ~0u;
-    view.camera = orl_camera_resized(&view.camera, SIDE, SIDE);
-    ORL_TRY(orl_renderer_draw(state->model->renderer, &view, &render, state->removed, NULL));
-    return orl_gpu_finish(s->gpu);
-}
-
 static void close_model(struct trim_state *state)
 {
-    if (!state->model)
-        return;
-    orl_renderer_destroy(&state->model->renderer);
-    orl_points_finish(&state->model->points);
-    free(state->model);
-    state->model = NULL;
+    orl_renderer_destroy(&state->model.renderer);
+    orl_points_finish(&state->model.points);
 }
 
 enum orl_result orl_trim_model_open(const struct trim_search *s, struct trim_state *state)
 {
-    size_t points = 0, photos = 0, all = s->scene->points.count;
+    size_t points, photos, all = s->scene->points.count;
     size_t count = (size_t)(orl_trim_point_shares[state->level[ORL_TRIM_POINTS]] * (double)all + 0.5);
-    struct trim_model *model = orl_array(s->log, 1, sizeof *model);
-    state->model = model;
-    ORL_TRY_MEMORY(model);
+    struct trim_model *model = &state->model;
     model->scene = *s->scene;
     model->scene.defaults = orl_trim_defaults(s, state);
-    enum orl_result result = ORL_OK;
     if (count < all) {
-        result = orl_points_thin_out(s->log, &s->scene->points, s->ranking.order, count, &model->points);
+        ORL_TRY(orl_points_thin_out(s->log, &s->scene->points, s->ranking.order, count, &model->points));
         model->scene.points = model->points;
     }
     orl_trim_count_bytes(s->gpu, &points, &photos);
-    ORL_THEN(result, orl_renderer_create(s->gpu, &model->scene, NULL, &model->renderer));
-    ORL_THEN(result, draw_first_frame(s, state));
+    ORL_TRY(orl_renderer_create(s->gpu, &model->scene, NULL, &model->renderer));
+    // Depth maps and masks of photographs take memory only once a method has asked for them.
+    ORL_TRY(orl_renderer_draw(model->renderer, &s->targets.views[0].view, &state->render, state->removed, NULL));
     orl_trim_count_bytes(s->gpu, &model->point_bytes, &model->photo_bytes);
     model->point_bytes -= points;
     model->photo_bytes -= photos;
-    if (result != ORL_OK)
-        close_model(state);
-    return result;
+    return ORL_OK;
 }
 
 const struct trim_model *orl_trim_model_of(const struct trim_state *state)
 {
-    while (!state->model)
+    while (!state->model.renderer)
         state = state->before;
-    return state->model;
+    return &state->model;
 }
 
 void orl_trim_models_close(struct trim_state *state)
@@ -116,86 +93,41 @@ double orl_trim_model_bytes(const struct trim_search *s, const struct trim_state
 
 enum orl_result orl_trim_state_begin(const struct trim_search *s, enum orl_trim_part part, struct trim_state **out)
 {
-    const size_t targets = s->targets.count, photos = s->scene->photo_count;
-    struct trim_state *state = orl_array(
-        s->log, 1, sizeof *state + targets * sizeof *state->score + photos * sizeof *state->removed);
+    const size_t size = sizeof **out + s->scene->photo_count * sizeof *(*out)->removed;
+    struct trim_state *state = orl_array(s->log, 1, size);
     *out = state;
     ORL_TRY_MEMORY(state);
-    *state = s->now ? *s->now : (struct trim_state){.render = s->params->start->params, .slower = 1};
+    if (s->now)
+        memcpy(state, s->now, size);
+    else
+        *state = (struct trim_state){.render = s->params->start->params, .slower = 1};
     state->before = s->now;
-    state->model = NULL;
+    state->model = (struct trim_model){0};
     state->shares = false;
     state->step = (struct orl_trim_step){.part = part};
-    state->removed = (bool *)(state->score + targets);
-    if (s->now)
-        memcpy(state->removed, s->now->removed, photos * sizeof *state->removed);
-    for (size_t i = 0; i < targets; i++)
-        state->score[i] = (struct trim_score){NAN, NAN};
+    state->score = (struct orl_score){0};
     return ORL_OK;
 }
 
 void orl_trim_state_destroy(struct trim_state **state)
 {
-    if (*state)
+    if (*state) {
         close_model(*state);
+        orl_score_finish(&(*state)->score);
+    }
     free(*state);
     *state = NULL;
 }
 
 // --- figures of a state ---
 
-// PSNR and SSIM of one target in the state, the target being left out.
-static enum orl_result measure_view(struct trim_search *s, struct trim_state *state, size_t view)
+// Measures the first `count` targets in the state.
+static enum orl_result measure(struct trim_search *s, struct trim_state *t, size_t count)
 {
-    struct trim_score *score = &state->score[view];
-    if (orl_progress_cancelled(s->params->progress))
-        return ORL_ERR_CANCELLED;
-    return orl_validation_compare(s->log, orl_trim_model_of(state)->renderer, &s->targets, view, &state->render,
-                                  state->removed, &score->db, &score->ssim);
-}
-
-// The losses from one state to another, over the targets that both have.
-static struct trim_loss loss_between(const struct trim_search *s, const struct trim_state *before,
-                                     const struct trim_state *after)
-{
-    struct trim_loss loss = {.worst_db = -INFINITY};
-    double count = 0;
-    for (size_t i = 0; i < s->targets.count; i++) {
-        const struct trim_score *a = &before->score[i], *b = &after->score[i];
-        if (isnan(a->db) || isnan(b->db))
-            continue;
-        loss.db += a->db - b->db;
-        loss.ssim += a->ssim - b->ssim;
-        loss.worst_db = fmax(loss.worst_db, a->db - b->db);
-        count++;
-    }
-    loss.db /= fmax(count, 1);
-    loss.ssim /= fmax(count, 1);
-    return loss;
-}
-
-// Measures the i-th of the targets that decide, unless that is done.
-static enum orl_result measure_deciding(struct trim_search *s, struct trim_state *t, size_t i)
-{
-    size_t view = orl_trim_validation_view(s, i, s->deciding_count);
-    return isnan(t->score[view].db) ? measure_view(s, t, view) : ORL_OK;
-}
-
-static void set_losses(const struct trim_search *s, struct trim_state *t)
-{
-    const struct trim_loss step = loss_between(s, t->before, t);
-    t->step.loss_db = step.db;
-    t->step.loss_ssim = step.ssim;
-    t->loss = loss_between(s, s->first, t);
-}
-
-// Whether a few views leave it open that all that decide allow the step.
-static bool is_open(const struct trim_search *s, const struct trim_state *t)
-{
-    struct trim_loss half = t->loss;
-    half.db /= half.db > 0 ? 2 : 1;
-    half.ssim /= half.ssim > 0 ? 2 : 1;
-    return orl_trim_fits(s, &half, 1);
+    ORL_TRY(orl_score_measure(s->log, orl_trim_model_of(t)->renderer, &s->targets, count, &t->render, t->removed,
+                              s->params->progress, &t->score));
+    t->loss = orl_score_loss(&s->first->score, &t->score);
+    return ORL_OK;
 }
 
 enum orl_result orl_trim_measure(struct trim_search *s, struct trim_state *t)
@@ -203,28 +135,128 @@ enum orl_result orl_trim_measure(struct trim_search *s, struct trim_state *t)
     if (!t->shares)
         ORL_TRY(orl_trim_model_open(s, t));
     t->step.bytes = orl_trim_model_bytes(s, t);
-    for (size_t i = 0; i < s->validation_count; i++)
-        ORL_TRY(measure_deciding(s, t, (2 * i + 1) * s->deciding_count / (2 * s->validation_count)));
-    set_losses(s, t);
-    for (size_t i = 0; is_open(s, t) && i < s->deciding_count; i++)
-        ORL_TRY(measure_deciding(s, t, i));
-    set_losses(s, t);
+    ORL_TRY(measure(s, t, s->validation_count));
+    // A few targets leave it open that all that decide allow the step.
+    const struct orl_score_loss half = {fmin(t->loss.psnr_db, t->loss.psnr_db / 2),
+                                        fmin(t->loss.ssim, t->loss.ssim / 2), t->loss.worst_db};
+    if (orl_trim_fits(s, &half, 1))
+        ORL_TRY(measure(s, t, s->deciding_count));
+    const struct orl_score_loss loss = orl_score_loss(&t->before->score, &t->score);
+    t->step.loss_db = loss.psnr_db;
+    t->step.loss_ssim = loss.ssim;
     return ORL_OK;
 }
 
-static bool is_within(const struct trim_loss *loss, const struct trim_loss *most)
+// How much may be lost in all when now so much is lost, and a step may use this share of what is left.
+static double allowed(double now, double most, double share)
 {
-    return loss->db <= most->db && loss->ssim <= most->ssim && loss->worst_db <= most->worst_db;
+    return fmin(now + share * (most - now), most);
 }
 
-bool orl_trim_fits(const struct trim_search *s, const struct trim_loss *loss, double share)
+bool orl_trim_fits(const struct trim_search *s, const struct orl_score_loss *loss, double share)
 {
-    const struct trim_loss *now = &s->now->loss, *all = &s->most;
-    const struct trim_loss most = {.db = fmin(now->db + share * (all->db - now->db), all->db),
-                                   .ssim = fmin(now->ssim + share * (all->ssim - now->ssim), all->ssim),
-                                   .worst_db = all->worst_db};
-    return is_within(loss, &most);
+    const struct orl_score_loss *now = &s->now->loss, *most = &s->most;
+    return loss->psnr_db <= allowed(now->psnr_db, most->psnr_db, share) &&
+           loss->ssim <= allowed(now->ssim, most->ssim, share) && loss->worst_db <= most->worst_db;
 }
+
+// --- the time of a frame ---
+
+// Only ratios of frames drawn in turns decide, since other programs on the machine change all times.
+enum { ROUNDS_OF_FIRST = 5, ROUNDS_OF_TRIAL = 24, ROUNDS_OF_WHOLE = 64 };
+// No frame may be slower than the whole scene's by more than this share, or so many milliseconds,
+// which no one sees.
+static const double slower_max = 0.02, slower_ms = 0.5, slower_software_ms = 8;
+// Standard error of a trial's ratio that is asked for, if as many rounds are enough for it: in the
+// end both models are timed more closely.
+static const double trial_error = 0.025;
+// A difference within so many standard errors counts as none.
+static const double same_errors = 2;
+
+// Two states whose frames are timed in turns. Each round has another view.
+struct pair {
+    const struct trim_search *s;
+    const struct trim_state *states[2];
+    size_t frames;
+};
+
+static enum orl_result time_frame(void *priv, bool second, double *ms)
+{
+    struct pair *pair = priv;
+    const struct trim_search *s = pair->s;
+    const struct trim_state *state = pair->states[second];
+    const struct orl_view *view = &s->targets.views[pair->frames++ / 2 % s->validation_count].view;
+    double (*const clock)(void) = orl_gpu_caps(s->gpu)->software ? orl_cpu_time_s : orl_time_s;
+    struct orl_render_params render = state->render;
+    if (orl_progress_cancelled(s->params->progress))
+        return ORL_ERR_CANCELLED;
+    render.leave_out |= ORL_LAYER_NORMAL;
+    const double start = clock();
+    ORL_TRY(orl_renderer_draw(orl_trim_model_of(state)->renderer, view, &render, state->removed, NULL));
+    *ms = 1e3 * (clock() - start);
+    return ORL_OK;
+}
+
+static enum orl_result compare(const struct trim_search *s, const struct trim_state *first,
+                               const struct trim_state *second, double limit, double error, size_t rounds_max,
+                               struct orl_pair_timing *timing)
+{
+    struct pair pair = {s, {first, second}, 0};
+    const struct orl_pair_timing_params params = {.time = time_frame, .priv = &pair, .limit = limit,
+                                                  .error = error, .rounds_max = rounds_max};
+    double unused;
+    // The first frame of each view reads the photographs that the view is painted from.
+    for (size_t k = 0; k < 2 * s->validation_count; k++)
+        ORL_TRY(time_frame(&pair, k % 2, &unused));
+    ORL_TRY(orl_pair_timing_take(&params, timing));
+    orl_logf(s->log, ORL_LOG_DEBUG, "frames take %.3f times as long (standard error %.1f %%, limit %.3f), %zu rounds",
+             timing->ratio, 100 * timing->error, limit, timing->rounds);
+    return ORL_OK;
+}
+
+double orl_trim_slow_limit(const struct trim_search *s)
+{
+    double least = orl_gpu_caps(s->gpu)->software ? slower_software_ms : slower_ms;
+    return 1 + fmax(slower_max, least / s->first_ms);
+}
+
+enum orl_result orl_trim_time_first(struct trim_search *s)
+{
+    struct orl_pair_timing timing;
+    ORL_TRY(compare(s, s->first, s->first, 1, 0, ROUNDS_OF_FIRST, &timing));
+    s->first_ms = timing.ms;
+    return ORL_OK;
+}
+
+enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_state *t)
+{
+    struct orl_pair_timing timing;
+    double limit = orl_trim_slow_limit(s) / t->before->slower;
+    ORL_TRY(compare(s, t->before, t, limit, trial_error, ROUNDS_OF_TRIAL, &timing));
+    bool same = fabs(log(timing.ratio)) <= same_errors * timing.error;
+    t->slower = t->before->slower * (same ? 1 : timing.ratio);
+    return ORL_OK;
+}
+
+enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow)
+{
+    struct orl_pair_timing timing;
+    double limit = orl_trim_slow_limit(s);
+    bool closed = !s->first->model.renderer;
+    if (closed)
+        ORL_TRY(orl_trim_model_open(s, s->first));
+    enum orl_result result = compare(s, s->first, s->now, limit, 0, ROUNDS_OF_WHOLE, &timing);
+    if (closed)
+        orl_trim_models_close(s->first);
+    ORL_TRY(result);
+    s->trim->before.frame_ms = timing.ms;
+    s->trim->after.frame_ms = timing.ratio * timing.ms;
+    s->now->slower = timing.ratio;
+    *slow = !orl_trim_has_budget(s) && orl_pair_timing_above(&timing, limit);
+    return ORL_OK;
+}
+
+// --- steps that are taken ---
 
 enum orl_result orl_trim_take(struct trim_search *s, struct trim_state **trial)
 {
@@ -233,42 +265,37 @@ enum orl_result orl_trim_take(struct trim_search *s, struct trim_state **trial)
     ORL_TRY(ORL_GROW(s->log, trim->steps, trim->step_capacity, trim->step_count));
     t->step.taken = true;
     t->step.ms = s->first_ms * t->slower;
-    t->step.total_loss_db = t->loss.db;
+    t->step.total_loss_db = t->loss.psnr_db;
     t->step.total_loss_ssim = t->loss.ssim;
     trim->steps[trim->step_count++] = t->step;
     if (s->params->on_step)
         s->params->on_step(s->params->priv, &t->step);
-    if (t->model)
+    if (t->model.renderer)
         orl_trim_models_close(t->before);
     s->now = t;
     *trial = NULL;
     return ORL_OK;
 }
 
-// --- all targets ---
-
 enum orl_result orl_trim_measure_all(struct trim_search *s, struct orl_trim_figures *figures)
 {
     const char *what = s->trim->step_count ? "trimmed scene" : "whole scene";
-    double n = (double)s->targets.count;
-    *figures = (struct orl_trim_figures){.frame_ms = figures->frame_ms};
+    struct trim_state *now = s->now;
     for (size_t i = 0; i < s->targets.count; i++) {
-        orl_progress_report(s->params->progress, what, (double)i, n, NULL);
-        ORL_TRY(measure_view(s, s->now, i));
-        figures->psnr_db += s->now->score[i].db / n;
-        figures->ssim += s->now->score[i].ssim / n;
+        orl_progress_report(s->params->progress, what, (double)i, (double)s->targets.count, NULL);
+        ORL_TRY(measure(s, now, i + 1));
     }
-    s->now->loss = loss_between(s, s->first, s->now);
-    figures->worst_loss_db = s->now->loss.worst_db;
-    figures->points = orl_trim_model_of(s->now)->scene.points.count;
-    figures->photographs = s->targets.count - s->now->removed_count;
+    *figures = (struct orl_trim_figures){
+        .frame_ms = figures->frame_ms, .psnr_db = now->score.psnr_db, .ssim = now->score.ssim,
+        .worst_loss_db = now->loss.worst_db, .points = orl_trim_model_of(now)->scene.points.count,
+        .photographs = s->targets.count - now->removed_count};
     return ORL_OK;
 }
 
 static enum orl_result take_back(struct trim_search *s)
 {
     struct trim_state *last = s->now;
-    bool own = last->model != NULL;
+    bool own = last->model.renderer;
     s->now = last->before;
     s->trim->steps[s->trim->step_count - ++s->trim->undone].taken = false;
     orl_trim_state_destroy(&last);
@@ -278,7 +305,7 @@ static enum orl_result take_back(struct trim_search *s)
 enum orl_result orl_trim_confirm(struct trim_search *s)
 {
     enum orl_result result = orl_trim_measure_all(s, &s->trim->after);
-    while (result == ORL_OK && s->now != s->first && !is_within(&s->now->loss, &s->most)) {
+    while (result == ORL_OK && s->now != s->first && !orl_trim_fits(s, &s->now->loss, 1)) {
         result = take_back(s);
         ORL_THEN(result, orl_trim_measure_all(s, &s->trim->after));
     }

@@ -124,17 +124,6 @@ void orl_validation_leave_out(const struct orl_scene *scene, size_t photo, const
     skip[photo] = true;
 }
 
-enum orl_result orl_validation_compare(const struct orl_log *log, struct orl_renderer *renderer,
-                                       const struct orl_validation *validation, size_t view,
-                                       const struct orl_render_params *render, const bool *removed,
-                                       double *psnr_db, double *ssim)
-{
-    const struct orl_heldout *target = &validation->views[view];
-    orl_validation_leave_out(&validation->scene, target->photo, removed, validation->skip);
-    return orl_heldout_compare(log, renderer, &validation->scene, target, render, validation->skip,
-                               psnr_db, ssim);
-}
-
 // --- scores ---
 
 static void set_means(struct orl_score *score)
@@ -147,20 +136,36 @@ static void set_means(struct orl_score *score)
     }
 }
 
+// PSNR and SSIM of one view. The other figures of struct orl_metrics take longer than a fast frame.
+static enum orl_result measure(const struct orl_log *log, struct orl_renderer *renderer,
+                               const struct orl_validation *v, const struct orl_heldout *view,
+                               const struct orl_render_params *render, const bool *removed, double figures[2])
+{
+    struct orl_image picture;
+    orl_validation_leave_out(&v->scene, view->photo, removed, v->skip);
+    enum orl_result result = orl_heldout_draw(log, renderer, &v->scene, view, render, v->skip, &picture, NULL);
+    if (result == ORL_OK) {
+        figures[0] = orl_metrics_psnr_db(&picture, &view->picture);
+        result = orl_metrics_ssim(log, &picture, &view->picture, &figures[1]);
+    }
+    orl_image_finish(&picture);
+    return result;
+}
+
 enum orl_result orl_score_measure(const struct orl_log *log, struct orl_renderer *renderer,
-                                  const struct orl_validation *validation,
-                                  const struct orl_render_params *render,
+                                  const struct orl_validation *v, size_t count,
+                                  const struct orl_render_params *render, const bool *removed,
                                   const struct orl_progress *progress,
                                   struct orl_score *score)
 {
-    *score = (struct orl_score){.views = orl_array(log, validation->count, sizeof *score->views)};
+    if (!score->views)
+        score->views = orl_array(log, v->count, sizeof *score->views);
     enum orl_result result = score->views ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < validation->count; i++) {
+    for (size_t i = score->count; result == ORL_OK && i < count; i++) {
         result = orl_progress_cancelled(progress)
                      ? ORL_ERR_CANCELLED
-                     : orl_validation_compare(log, renderer, validation, i, render, NULL,
-                                              &score->views[i][0], &score->views[i][1]);
-        score->count += result == ORL_OK;
+                     : measure(log, renderer, v, &v->views[i], render, removed, score->views[i]);
+        score->count = i + 1;
     }
     set_means(score);
     if (result != ORL_OK)
@@ -172,6 +177,24 @@ void orl_score_finish(struct orl_score *score)
 {
     free(score->views);
     memset(score, 0, sizeof *score);
+}
+
+static size_t common(const struct orl_score *a, const struct orl_score *b)
+{
+    return a->count < b->count ? a->count : b->count;
+}
+
+struct orl_score_loss orl_score_loss(const struct orl_score *before, const struct orl_score *now)
+{
+    const size_t n = common(before, now);
+    struct orl_score_loss loss = {.worst_db = -INFINITY};
+    for (size_t i = 0; i < n; i++) {
+        const double lost_db = before->views[i][0] - now->views[i][0];
+        loss.psnr_db += lost_db / (double)n;
+        loss.ssim += (before->views[i][1] - now->views[i][1]) / (double)n;
+        loss.worst_db = fmax(loss.worst_db, lost_db);
+    }
+    return loss;
 }
 
 // Both figures of a photograph as one, in dB.
@@ -189,12 +212,14 @@ static double gain_of(const struct orl_score *now, const struct orl_score *befor
 bool orl_score_better(const struct orl_score *now, const struct orl_score *before,
                       double gain_db)
 {
-    double n = (double)now->count, mean = 0, square = 0;
-    if (now->psnr_db < before->psnr_db || now->ssim < before->ssim)
+    const struct orl_score_loss loss = orl_score_loss(before, now);
+    const size_t count = common(before, now);
+    double n = (double)count, mean = 0, square = 0;
+    if (loss.psnr_db > 0 || loss.ssim > 0)
         return false;
-    for (size_t i = 0; i < now->count; i++)
+    for (size_t i = 0; i < count; i++)
         mean += gain_of(now, before, i) / n;
-    for (size_t i = 0; i < now->count; i++)
+    for (size_t i = 0; i < count; i++)
         square += pow(gain_of(now, before, i) - mean, 2) / n;
     double error = n > 1 ? sqrt(square / (n - 1)) : 0;
     return mean >= gain_db && mean > error;

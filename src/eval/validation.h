@@ -11,7 +11,7 @@ enum { ORL_VALIDATION_TRAIN_MIN = 3 };
 
 struct orl_validation {
     struct orl_scene scene; // shares all but `photos`, which are owned: their gains are those for validation
-    struct orl_heldout *views; // owned: the photographs, in ascending order
+    struct orl_heldout *views; // owned: the photographs, in ascending order when they are loaded
     size_t count;
     bool *skip; // owned: photographs that the current rendering does without
 };
@@ -37,35 +37,36 @@ bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b
 // the same place (unless no other is left) and those that `removed` marks (NULL: none).
 void orl_validation_leave_out(const struct orl_scene *scene, size_t photo, const bool *removed,
                               bool *skip);
-// Renders the view of validation->views[view] without what orl_validation_leave_out marks, and
-// compares as orl_heldout_compare does. The renderer's scene must have the photographs of the
-// validation's scene, in the same order.
-enum orl_result orl_validation_compare(const struct orl_log *log, struct orl_renderer *renderer,
-                                       const struct orl_validation *validation, size_t view,
-                                       const struct orl_render_params *render, const bool *removed,
-                                       double *psnr_db, double *ssim) ORL_CHECK_RESULT;
 
 // --- what they say of one setting, and whether another one is better ---
 
 struct orl_score {
     double (*views)[2];   // owned: PSNR in dB and SSIM of each photograph
-    size_t count;
-    double psnr_db, ssim; // means
+    size_t count;         // of the photographs that are measured, the first of the validation
+    double psnr_db, ssim; // means over them
 };
 
-// Renders the views of all validation photographs, each without its own photograph. `score` is empty
-// or finished before. ORL_ERR_CANCELLED: `progress` (NULL: none) asks for it.
+// Renders the views of those of the first `count` validation photographs that `score` lacks, each without
+// what orl_validation_leave_out marks, and compares them. `score` is empty at first, and after a failure.
+// The renderer's scene must have the photographs of the validation's scene, in the same order.
+// ORL_ERR_CANCELLED: `progress` (NULL: none) asks for it.
 enum orl_result orl_score_measure(const struct orl_log *log, struct orl_renderer *renderer,
-                                  const struct orl_validation *validation,
-                                  const struct orl_render_params *render,
+                                  const struct orl_validation *validation, size_t count,
+                                  const struct orl_render_params *render, const bool *removed,
                                   const struct orl_progress *progress,
                                   struct orl_score *score) ORL_CHECK_RESULT;
 void orl_score_finish(struct orl_score *score);
 
-// True when `now` is better than `before`, of the same photographs: neither mean is worse, and
-// the gain, the mean of those of PSNR and of SSIM in dB (-10 log10(1 - SSIM)), is at least `gain_db` and
-// larger than its standard error over the photographs. What a few photographs gain by chance is
-// refused, since it would not hold for others.
+// What a score loses against another one, over the photographs that both have.
+struct orl_score_loss {
+    double psnr_db, ssim; // means
+    double worst_db;      // the most that one photograph loses
+};
+struct orl_score_loss orl_score_loss(const struct orl_score *before, const struct orl_score *now);
+
+// True when `now` is better than `before`: neither mean is worse, and the gain, the mean of those of PSNR
+// and of SSIM in dB (-10 log10(1 - SSIM)), is at least `gain_db` and larger than its standard error over
+// the photographs. What a few photographs gain by chance is refused, since it would not hold for others.
 bool orl_score_better(const struct orl_score *now, const struct orl_score *before,
                       double gain_db);
 

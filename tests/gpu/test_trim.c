@@ -279,7 +279,7 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
     for (int fine = 0; fine < 2; fine++) {
         struct orl_trim report = {0};
         struct trim_search s = {.gpu = gpu, .scene = &f.scene, .params = &params, .trim = &report,
-                                .most = {.db = 0.5, .ssim = 1, .worst_db = 9}};
+                                .most = {.psnr_db = 0.5, .ssim = 1, .worst_db = 9}};
         assert_int_equal(orl_validation_load(NULL, &f.scene, 0, 1, &s.targets), ORL_OK);
         assert_int_equal(orl_trim_state_begin(&s, ORL_TRIM_DEPTH, &s.first), ORL_OK);
         s.now = s.first;
@@ -294,7 +294,7 @@ static void steps_that_lose_too_much_are_taken_back(void **state)
             assert_int_equal(orl_trim_take(&s, &t), ORL_OK);
         }
         for (size_t i = 0; i < s.targets.count; i++)
-            s.first->score[i].db += fine ? 0.4 : 0.6;
+            s.first->score.views[i][0] += fine ? 0.4 : 0.6;
         assert_int_equal(orl_trim_confirm(&s), ORL_OK);
         assert_true((s.now == s.first) == !fine);
         assert_int_equal(s.now->level[ORL_TRIM_DEPTH], fine ? 2 : 0);
