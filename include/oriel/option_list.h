@@ -69,7 +69,8 @@
         "How far two depths may differ and still count as the same surface.") \
     NUMBER(front_layer, 0, 0, 0.1, "fraction of depth", "proxy=splats", \
         ORL_TRIES(0, 0.005, 0.01, 0.02), \
-        "A splat that is farther than this from all surfaces around is covered by them. With 0 none is.") \
+        "Splats no farther than this behind the nearest one are averaged with it. A splat that is farther from " \
+        "all surfaces around is covered by them. With 0 the nearest splat alone counts.") \
     NUMBER(splat_scale, 1, 0.01, 16, "", "proxy=splats", ORL_TRIES(0.7, 1, 1.4), \
         "Multiplies the radii of the splats. Larger splats close more holes and fatten edges.") \
     NUMBER(reconstructions, 1, 1, 9, "pictures", "proxy=splats", ORL_NO_TRIES, \

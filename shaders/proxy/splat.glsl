@@ -3,6 +3,12 @@
 #include "shared/render_blocks.h"
 #include "proxy/point.glsl"
 
+// Number of depth steps within the front layer (opt.front_layer).
+const float SPLAT_LAYER_STEPS = 64.0;
+// A pixel of splat_layer holds the sum of depth steps in the low bits and the count of points above
+// them. It is exact for up to 8191 points in one pixel; with more, the depth stays within the front layer.
+const uint SPLAT_LAYER_COUNT = 1u << 19;
+
 // Rotates a world vector into the camera frame.
 vec3 splat_camera_vector(vec3 d)
 {

@@ -11,15 +11,16 @@ layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rg32ui, binding = 0) readonly uniform uimageBuffer points; // proxy/point.glsl
 layout(binding = 0) uniform samplerBuffer blocks; // ORL_BLOCK_VEC4S each
 layout(r32ui, binding = 1) readonly uniform uimage2D splat_index;
+layout(r32ui, binding = 2) readonly uniform uimage2D splat_layer;
 #ifdef NORMALS
-layout(rg32ui, binding = 2) writeonly uniform uimage2D splats; // surfel_pack_own
+layout(rg32ui, binding = 3) writeonly uniform uimage2D splats; // surfel_pack_own
 #else
-layout(r32f, binding = 2) writeonly uniform image2D splats; // surfel_own_depth
+layout(r32f, binding = 3) writeonly uniform image2D splats; // surfel_own_depth
 #endif
-layout(rgba32f, binding = 3) writeonly uniform image2D coarse_a;
-layout(rg32ui, binding = 4) writeonly uniform uimage2D coarse_b;
+layout(rgba32f, binding = 4) writeonly uniform image2D coarse_a;
+layout(rg32ui, binding = 5) writeonly uniform uimage2D coarse_b;
 #ifdef CHUNKS
-layout(rgba32ui, binding = 5) uniform uimage2D won; // surfels of this and earlier chunks
+layout(rgba32ui, binding = 6) uniform uimage2D won; // surfels of this and earlier chunks
 #endif
 
 vec2 splat_ray(vec2 pixel)
@@ -34,6 +35,10 @@ surfel splat(ivec2 at, int point)
     vec3 p = splat_camera_position(code, corner);
     vec2 pixel;
     splat_pixel(p, pixel);
+    uint word = imageLoad(splat_layer, at).x;
+    float count = float(word / SPLAT_LAYER_COUNT), steps = float(word % SPLAT_LAYER_COUNT);
+    float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
+    p *= 1.0 + behind * front_layer;
     vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
     float radius = point_radius(code, corner.w) * splat_scale;
     bool outlier = p.z < near && radius * focal.y > ORL_OUTLIER_SHARE * float(view_size.y) * p.z;

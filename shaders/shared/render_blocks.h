@@ -23,9 +23,10 @@ ORL_BLOCK(splat_block)
     IVEC2(view_size);   // pixels
     INT(point_count);   // points of this chunk
     INT(first_point);   // index of the chunk's first point
-    FLOAT(splat_scale); // the option of the same name
+    FLOAT(splat_scale); // this and the next: the options of the same names
+    FLOAT(front_layer);
     FLOAT(near);        // depth nearer than which large splats are outliers
-    IVEC2(unused);
+    FLOAT(unused);
 };
 #endif
 

@@ -26,6 +26,7 @@ function makePrograms(device, sources, manifest, planes)
     const tries = {TILE, ...reads, PLANES: planes, TEXELS: costTexels(planes)};
     return {
         splats: device.program(sources, "points.vert", "splats.frag"),
+        layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
         pullFinest: screen("pull.frag", {FINEST: 1}), pull: screen("pull.frag"),
         push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
         seedDepth: screen("fill_seed_depth.frag"),
@@ -65,6 +66,7 @@ class Frame {
     {
         Object.assign(this, {device, width, height, targets: [], mipmapped: []});
         this.level0 = this.make(width, height, ["RGBA32F", "R32UI", "RGBA8"], {depth: true});
+        this.layer = this.make(width, height, ["RG16F"]);
         const surfels = this.pyramid(["RGBA32F", "RG32UI"], LEVELS_MAX - 1); // above level0
         this.pulled = [null, ...surfels.pulled];
         this.pushed = [null, ...surfels.pushed];
@@ -209,34 +211,49 @@ export class Renderer {
 
     splat(camera, options)
     {
-        const gl = this.device.gl, f = this.frame, program = this.programs.splats;
-        const place = name => program.uniforms.get(name);
+        const gl = this.device.gl, f = this.frame;
         const lists = this.clouds.map(cloud => ({cloud, list: cloud.visible(camera)}));
         this.drawn = lists.reduce((sum, {list}) => list.reduce((part, cell) => part + cell.loaded, sum), 0);
+        const common = {...this.values, rotation: camera.r, size: [camera.width, camera.height],
+                        cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]};
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LESS);
         this.device.clear(f.level0);
-        this.device.begin(f.level0);
-        program.use({...this.values, rotation: camera.r, size: [camera.width, camera.height],
-                     cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]});
+        this.drawCells(this.programs.splats, f.level0, common, lists, options.splat_scale);
+        gl.disable(gl.DEPTH_TEST);
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.ONE, gl.ONE);
+        this.device.clear(f.layer);
+        this.drawCells(this.programs.layer, f.layer, {...common, nearest: f.level0.textures[0]}, lists,
+                       options.splat_scale);
+        gl.disable(gl.BLEND);
+    }
+
+    drawCells(program, target, common, lists, radiusScale)
+    {
+        const gl = this.device.gl, places = name => program.uniforms.get(name);
+        this.device.begin(target);
+        program.use(common);
         for (const {cloud, list} of lists) {
             gl.bindVertexArray(cloud.vertices);
             for (const cell of list) {
-                program.set(place("cell_low"), sub(cell.low, camera.eye));
-                program.set(place("cell_size"), cell.size);
-                // Points that are there stand for those that are still loading.
-                program.set(place("cell_radius"), [cell.radiusLow * options.splat_scale * Math.sqrt(cell.count / cell.loaded),
-                                                   cell.radiusOctaves]);
+                program.set(places("cell_low"), sub(cell.low, this.camera.eye));
+                program.set(places("cell_size"), cell.size);
+                if (places("cell_radius"))
+                    // Points that are there stand for those that are still loading.
+                    program.set(places("cell_radius"),
+                                [cell.radiusLow * radiusScale * Math.sqrt(cell.count / cell.loaded),
+                                 cell.radiusOctaves]);
                 gl.drawArrays(gl.POINTS, cell.base, cell.loaded);
             }
         }
-        gl.disable(gl.DEPTH_TEST);
     }
 
     pullPush()
     {
         const {device, programs, frame: f, values} = this, top = f.pulled.length - 1;
-        const level0 = {...values, splats: f.level0.textures[0], splat_normals: f.level0.textures[1]};
+        const level0 = {...values, splats: f.level0.textures[0], splat_normals: f.level0.textures[1],
+                        layers: f.layer.textures[0]};
         const fine = t => ({fine_a: t.textures[0], fine_b: t.textures[1]});
         const coarse = t => ({coarse_a: t.textures[0], coarse_b: t.textures[1]});
         device.pass(programs.pullFinest, f.pulled[1], {...level0, level: 1});

@@ -1,4 +1,5 @@
 // Points of one cell, one pixel each. Row 0 of every target but the canvas is the top row.
+// LAYER: the points of the front layer alone, which layer.frag sums for their mean depth.
 #include "proxy/octahedron.glsl"
 
 layout(location = 0) in vec3 part;       // position within the cell's bounds
@@ -11,9 +12,15 @@ uniform vec4 view_focal;                      // fx fy cx cy, pixels
 uniform vec2 size;                       // pixels
 uniform float typical;                   // depth, where the depth test is most exact
 
+#ifdef LAYER
+uniform sampler2D nearest; // splats.frag
+uniform float front_layer;
+flat out float behind;
+#else
 flat out vec4 splat;
 flat out uint normal;
 flat out vec3 color;
+#endif
 
 void main()
 {
@@ -21,11 +28,17 @@ void main()
     vec2 pixel = view_focal.xy * p.xy / p.z + view_focal.zw;
     vec2 at = floor(pixel);
     bool drawn = p.z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < size.x && at.y < size.y;
+#ifdef LAYER
+    float front = drawn ? texelFetch(nearest, ivec2(at), 0).x : 0.0;
+    behind = (p.z - front) / (front * max(front_layer, 1e-9));
+    drawn = drawn && behind < 1.0;
+#else
     vec3 n = rotation * octahedron_decode(octahedral);
     n = dot(n, p) > 0.0 ? -n : n;
     splat = vec4(p.z, cell_radius.x * exp2(cell_radius.y * look.a), pixel - (at + 0.5));
     normal = packSnorm2x16(octahedron_encode(n));
     color = look.rgb;
+#endif
     vec2 place = (at + 0.5) / size * 2.0 - 1.0;
     float order = 2.0 * p.z / (p.z + typical) - 1.0;
     gl_Position = drawn ? vec4(place, order, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);

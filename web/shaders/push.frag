@@ -3,7 +3,6 @@
 // LAST: level 0, which comes out as depth and normal at pixel centres.
 #include "level0.glsl"
 
-uniform float front_layer;
 uniform sampler2D coarse_a;
 uniform highp usampler2D coarse_b;
 #ifdef LAST

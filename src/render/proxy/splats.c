@@ -70,8 +70,8 @@ static void finish_target(struct orl_gpu *gpu, void *memory)
         orl_tex_destroy(gpu, &target->surfel_b[i]);
     }
     struct orl_tex **const textures[] = {
-        &target->splat_depth, &target->splat_index, &target->splats, &target->chunk_splats,
-        &target->surface.depth, &target->surface.normal,
+        &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
+        &target->chunk_splats, &target->surface.depth, &target->surface.normal,
     };
     for (size_t i = 0; i < ORL_COUNT(textures); i++)
         orl_tex_destroy(gpu, textures[i]);
@@ -86,6 +86,7 @@ static enum orl_result make_target(struct orl_gpu *gpu, const void *state, void 
     const struct orl_tex_row rows[] = {
         {"splat depth", GL_R32UI, &target->splat_depth},
         {"splat index", GL_R32UI, &target->splat_index},
+        {"splat layer", GL_R32UI, &target->splat_layer},
         {"splats", GL_RG32UI, &target->splats},
         {"proxy depth", GL_R32F, &target->surface.depth},
         {"proxy normal", GL_RGBA16F, &target->surface.normal},
@@ -101,8 +102,10 @@ static struct splat_block splat_params(const struct cloud *cloud, const struct o
 {
     struct splat_block block = {.view_size = {view->camera.width, view->camera.height},
                                 .near = cloud->near};
-    if (params)
+    if (params) {
         block.splat_scale = params->splat_scale;
+        block.front_layer = params->front_layer;
+    }
     orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view->camera, block.focal);
     return block;
@@ -113,6 +116,7 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
 {
     orl_tex_fill(t->splat_depth, UINT32_MAX);
     orl_tex_fill(t->splat_index, UINT32_MAX);
+    orl_tex_fill(t->splat_layer, 0);
     orl_cloud_cull(gpu, cloud, block);
     struct orl_prog *const passes[] = {orl_prog_get(gpu, "proxy/splat_depth.comp", NULL, NULL),
                                        orl_prog_get(gpu, "proxy/splat_index.comp", NULL, NULL)};
@@ -128,7 +132,8 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
                                                 {chunk->list_texels, 0, GL_READ_ONLY},
                                                 {chunk->arg_texels, 0, GL_READ_ONLY},
                                                 {t->splat_depth, 0, GL_READ_WRITE},
-                                                {t->splat_index, 0, GL_READ_WRITE}},
+                                                {t->splat_index, 0, GL_READ_WRITE},
+                                                {t->splat_layer, 0, GL_READ_WRITE}},
                                      .indirect = chunk->args,
                                      .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
             orl_gpu_dispatch(gpu, &d);
@@ -151,12 +156,13 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
                                  .textures = {chunk->block_texels},
                                  .images = {{chunk->point_texels, 0, GL_READ_ONLY},
                                             {t->splat_index, 0, GL_READ_ONLY},
+                                            {t->splat_layer, 0, GL_READ_ONLY},
                                             {normals ? t->splats : t->surface.depth, 0, GL_WRITE_ONLY},
                                             {t->surfel_a[1], 0, GL_WRITE_ONLY},
                                             {t->surfel_b[1], 0, GL_WRITE_ONLY}},
                                  .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
         if (chunks)
-            d.images[5] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
+            d.images[6] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
         orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
         orl_gpu_dispatch(gpu, &d);
     }

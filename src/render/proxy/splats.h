@@ -13,6 +13,7 @@ struct splat_target {
     int levels;
     struct orl_tex *splat_depth;  // R32UI: bits of the nearest depth; all bits set: empty
     struct orl_tex *splat_index;  // R32UI: index of the nearest point; all bits set: empty
+    struct orl_tex *splat_layer;  // R32UI: shaders/proxy/splat.glsl
     struct orl_tex *splats;       // RG32UI: level 0 of the pyramid (shaders/proxy/surfel.glsl),
                                   // used if normals are asked for
     struct orl_tex *chunk_splats; // RGBA32UI: surfels of level 0; NULL: points are one chunk
