@@ -1,10 +1,10 @@
 # Sourced by demo.sh and test.sh: what Oriel needs from Debian, and its build.
 
 oriel_packages() {
-    echo build-essential cmake ninja-build pkg-config colmap ffmpeg \
+    echo build-essential cmake ninja-build pkg-config colmap ffmpeg python3 \
         libegl-dev libegl1 libopengl0 libgl1-mesa-dri libepoxy-dev \
         libopencv-dev libflann-dev libmeshoptimizer-dev libopenexr-dev libjpeg-dev libpng-dev libtiff-dev libraw-dev libheif-dev liblcms2-dev libexif-dev \
-        libjansson-dev libexpat1-dev libsqlite3-dev libwebsockets-dev libxxhash-dev libstb-dev "$@"
+        libjansson-dev libsqlite3-dev libwebsockets-dev libxxhash-dev libstb-dev "$@"
 }
 
 # Installs the packages that are missing, and those named in the arguments.

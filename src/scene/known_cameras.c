@@ -27,24 +27,6 @@ void orl_known_cameras_finish(struct orl_known_cameras *known)
 
 // --- adding cameras ---
 
-void orl_known_set_lens(struct orl_known_camera *camera, const double f_c[4], const double *distortion,
-                        size_t count, bool fisheye)
-{
-    double d[8] = {0};
-    bool full = false, any = false;
-    for (size_t i = 0; i < count && i < ORL_COUNT(d); i++) {
-        d[i] = distortion[i];
-        any = any || d[i] != 0;
-        full = full || (i >= 4 && d[i] != 0);
-    }
-    camera->model = fisheye ? ORL_COLMAP_OPENCV_FISHEYE
-                    : full  ? ORL_COLMAP_FULL_OPENCV
-                    : any   ? ORL_COLMAP_OPENCV
-                            : ORL_COLMAP_PINHOLE;
-    memcpy(camera->params, f_c, 4 * sizeof *f_c);
-    memcpy(camera->params + 4, d, sizeof d);
-}
-
 static bool same_camera(const struct orl_colmap_camera *a, const struct orl_known_gap *gap,
                         const struct orl_known_camera *b)
 {
@@ -74,20 +56,20 @@ static const char *camera_problem(const struct orl_known_camera *given)
     return *given->path ? NULL : "its picture has no name";
 }
 
-enum orl_result orl_known_bad(const struct orl_known_source *source, const char *place, const char *what)
+enum orl_result orl_known_bad(const struct orl_log *log, const char *file, const char *place, const char *what)
 {
-    return orl_fail(source->log, ORL_ERR_FORMAT, "%s: %s: %s", source->path, place, what);
+    return orl_fail(log, ORL_ERR_FORMAT, "%s: %s: %s", file, place, what);
 }
 
-static enum orl_result add_camera(const struct orl_known_source *source, const struct orl_known_camera *given,
+static enum orl_result add_camera(const struct orl_log *log, const char *file, const struct orl_known_camera *given,
                                   struct orl_known_cameras *known)
 {
     struct orl_colmap_model *model = &known->model;
     size_t count = model->camera_count;
     if (count && same_camera(&model->cameras[count - 1], &known->gaps[count - 1], given))
         return ORL_OK;
-    ORL_TRY(ORL_GROW(source->log, model->cameras, model->camera_capacity, count));
-    ORL_TRY(ORL_GROW(source->log, known->gaps, known->gap_capacity, count));
+    ORL_TRY(ORL_GROW(log, model->cameras, model->camera_capacity, count));
+    ORL_TRY(ORL_GROW(log, known->gaps, known->gap_capacity, count));
     struct orl_colmap_camera *camera = &model->cameras[count];
     *camera = (struct orl_colmap_camera){.id = (uint32_t)count + 1, .model = given->model,
                                          .param_count = orl_colmap_model_lens(given->model).params};
@@ -100,7 +82,7 @@ static enum orl_result add_camera(const struct orl_known_source *source, const s
     }
     const char *problem =
         orl_colmap_camera_set(camera, (uint64_t)given->width, (uint64_t)given->height);
-    return problem ? orl_known_bad(source, given->place, problem) : ORL_OK;
+    return problem ? orl_known_bad(log, file, given->place, problem) : ORL_OK;
 }
 
 // A stated path, as other systems write them, too: '/' between its parts, no "./" ahead of them.
@@ -128,15 +110,14 @@ bool orl_known_find(const char *folder, const char *stated, char path[ORL_PATH_S
     return false;
 }
 
-enum orl_result orl_known_add(const struct orl_known_source *source, const struct orl_known_camera *given,
+enum orl_result orl_known_add(const struct orl_log *log, const char *file, const struct orl_known_camera *given,
                               struct orl_known_cameras *known)
 {
-    const struct orl_log *log = source->log;
     struct orl_colmap_model *model = &known->model;
     const char *problem = camera_problem(given);
     if (problem)
-        return orl_known_bad(source, given->place, problem);
-    ORL_TRY(add_camera(source, given, known));
+        return orl_known_bad(log, file, given->place, problem);
+    ORL_TRY(add_camera(log, file, given, known));
     size_t count = model->image_count;
     ORL_TRY(ORL_GROW(log, model->images, model->image_capacity, count));
     ORL_TRY(ORL_GROW(log, known->pictures, known->picture_capacity, count));
@@ -178,78 +159,6 @@ enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint
     seen_by->points[seen_by->point_count++] = point;
     model->points[point].track_length++;
     return ORL_OK;
-}
-
-// --- values in JSON ---
-
-static bool read_number(const json_t *item, double *value)
-{
-    const char *text = json_string_value(item);
-    char *end = NULL;
-    *value = text ? strtod(text, &end) : json_number_value(item);
-    return (text ? end != text && !*end : json_is_number(item)) && isfinite(*value);
-}
-
-bool orl_known_json_number(const json_t *object, const char *key, double *value)
-{
-    return read_number(json_object_get(object, key), value);
-}
-
-bool orl_known_json_numbers(const json_t *array, size_t count, double *values)
-{
-    bool good = json_array_size(array) == count;
-    for (size_t i = 0; good && i < count; i++)
-        good = read_number(json_array_get(array, i), &values[i]);
-    return good;
-}
-
-void orl_known_look_for_unused(struct orl_known_unused *unused, const json_t *object)
-{
-    enum { MOST = 20 };
-    const char *key;
-    json_t *value;
-    json_object_foreach((json_t *)object, key, value) {
-        bool known = orl_text_is_one_of(key, unused->used) || orl_names_contain(&unused->names, key);
-        if (!known && unused->names.count < MOST && orl_names_add(NULL, &unused->names, key) != ORL_OK)
-            return; // the line is shorter, no more
-    }
-}
-
-// Of each entry of a list, or of an object whose keys are names.
-static void look_into(struct orl_known_unused *unused, const json_t *entries)
-{
-    const char *key;
-    json_t *value;
-    for (size_t i = 0; i < json_array_size(entries); i++)
-        orl_known_look_for_unused(unused, json_array_get(entries, i));
-    json_object_foreach((json_t *)entries, key, value)
-        orl_known_look_for_unused(unused, value);
-}
-
-void orl_known_say_unused_of(const struct orl_known_source *source, const json_t *root,
-                             const char *const *used, const char *const *lists)
-{
-    struct orl_known_unused unused = {.used = used};
-    if (json_is_array(root))
-        look_into(&unused, root);
-    else
-        orl_known_look_for_unused(&unused, root);
-    for (; lists && *lists; lists++)
-        look_into(&unused, json_object_get(root, *lists));
-    orl_known_say_unused(source, &unused);
-}
-
-void orl_known_say_unused(const struct orl_known_source *source, struct orl_known_unused *unused)
-{
-    char text[512] = "";
-    size_t at = 0;
-    orl_names_sort(&unused->names);
-    for (size_t i = 0; i < unused->names.count && at < sizeof text; i++)
-        at += (size_t)snprintf(text + at, sizeof text - at, "%s%.64s", i ? ", " : "",
-                               unused->names.items[i]);
-    if (unused->names.count)
-        orl_logf(source->log, ORL_LOG_INFO, "%s: not used: %s", source->path, text);
-    orl_names_finish(&unused->names);
 }
 
 // --- names ---

@@ -18,14 +18,10 @@ const struct fuzz_target fuzz_targets[] = {
     {"png", fuzz_png},                     {"tiff", fuzz_tiff},
     {"heif", fuzz_heif},                   {"exr", fuzz_exr},
     {"raw", fuzz_raw},                     {"cameras_json", fuzz_cameras_json},
-    {"metashape", fuzz_metashape},         {"realityscan", fuzz_realityscan},
-    {"visualsfm", fuzz_visualsfm},         {"llff", fuzz_llff},
-    {"polycam", fuzz_polycam},             {"stream", fuzz_stream},
-    {"bundler", fuzz_bundler},             {"middlebury", fuzz_middlebury},
-    {"workspace", fuzz_workspace},         {"mesh", fuzz_mesh},
-    {"database", fuzz_database},           {"walk_message", fuzz_walk_message},
-    {"walk_settings", fuzz_walk_settings}, {"options", fuzz_options},
-    {"shader", fuzz_shader},
+    {"stream", fuzz_stream},               {"workspace", fuzz_workspace},
+    {"mesh", fuzz_mesh},                   {"database", fuzz_database},
+    {"walk_message", fuzz_walk_message},   {"walk_settings", fuzz_walk_settings},
+    {"options", fuzz_options},             {"shader", fuzz_shader},
     {0},
 };
 

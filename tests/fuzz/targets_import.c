@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "fuzz.h"
 #include "preprocess/calibrate/database.h"
 #include "preprocess/import/import_internal.h"
 #include "scene/info.h"
+#include "scene/known_internal.h"
 #include "scene/mesh.h"
 
 // What import does with each camera: completes it from a picture's size, then finds the camera of
@@ -27,7 +29,7 @@ static void use_camera(struct orl_known_cameras *known, size_t index, int width,
     }
 }
 
-static void read_cameras(const char *path, double pixel_centre)
+static void read_cameras(const char *path, double pixel_centre, const struct orl_known_gap *gap)
 {
     enum { CAMERAS_MAX = 4 };
     struct orl_known_cameras known;
@@ -44,55 +46,28 @@ static void read_cameras(const char *path, double pixel_centre)
         for (size_t k = 0; k < image->point_count; k++)
             fuzz_require(image->points[k] < known.model.point_count, "observed points are there");
     }
-    for (size_t i = 0; i < known.model.camera_count && i < CAMERAS_MAX; i++)
+    for (size_t i = 0; i < known.model.camera_count && i < CAMERAS_MAX; i++) {
+        known.gaps[i] = *gap;
         use_camera(&known, i, 64, 48);
+    }
     orl_known_cameras_finish(&known);
 }
 
-// The first byte's last two bits: the convention of pixel centres.
+// The first byte's last two bits: the convention of pixel centres; the next two: what the file leaves open.
 void fuzz_cameras_json(const uint8_t *data, size_t size)
 {
     static const double centres[] = {-1, 0, 0.5, -1};
-    fuzz_save("transforms.json", data + (size > 0), size - (size > 0));
-    read_cameras(fuzz_path("transforms.json"), size ? centres[data[0] & 3] : -1);
-}
-
-void fuzz_bundler(const uint8_t *data, size_t size)
-{
-    static const char *const names[] = {"list.txt", "bundle.out"};
-    fuzz_save_parts(names, ORL_COUNT(names), data, size);
-    read_cameras(fuzz_path("."), -1);
-}
-
-// Formats of one file.
-#define CAMERAS(target, name) \
-    void fuzz_##target(const uint8_t *data, size_t size) \
-    { \
-        fuzz_save(name, data, size); \
-        read_cameras(fuzz_path(name), -1); \
-    }
-CAMERAS(middlebury, "a_par.txt")
-CAMERAS(metashape, "cameras.xml")
-CAMERAS(realityscan, "cameras.csv")
-CAMERAS(visualsfm, "model.nvm")
-
-// The file does not name its pictures: there are two.
-void fuzz_llff(const uint8_t *data, size_t size)
-{
-    if (orl_dir_make(&fuzz_log, fuzz_path("llff/images")) != ORL_OK)
-        abort();
-    fuzz_save("llff/images/a.jpg", data, 0);
-    fuzz_save("llff/images/b.jpg", data, 0);
-    fuzz_save("llff/poses_bounds.npy", data, size);
-    read_cameras(fuzz_path("llff/poses_bounds.npy"), -1);
-}
-
-void fuzz_polycam(const uint8_t *data, size_t size)
-{
-    if (orl_dir_make(&fuzz_log, fuzz_path("phone/keyframes/cameras")) != ORL_OK)
-        abort();
-    fuzz_save("phone/keyframes/cameras/1.json", data, size);
-    read_cameras(fuzz_path("phone"), -1);
+    static const struct orl_known_gap gaps[] = {{0}, {.centre = true}, {.side = 1}, {.fov_x_rad = 1}};
+    int first = size ? data[0] : 0;
+    json_t *root = NULL;
+    // Other files are for the script (known_cameras.py).
+    bool own = size && orl_json_parse(&fuzz_log, "it", data + 1, size - 1, &root) == ORL_OK &&
+               orl_known_is_own(root);
+    json_decref(root);
+    if (!own)
+        return;
+    fuzz_save("cameras.json", data + 1, size - 1);
+    read_cameras(fuzz_path("cameras.json"), centres[first & 3], &gaps[first >> 2 & 3]);
 }
 
 static void use_scene(const char *dir)
@@ -148,7 +123,7 @@ void fuzz_workspace(const uint8_t *data, size_t size)
     unlink(fuzz_path("ws/scene.json"));
     fuzz_save_parts(is_scene ? whole : plain, is_scene ? ORL_COUNT(whole) : ORL_COUNT(plain),
                     data + (size > 0), size - (size > 0));
-    read_cameras(fuzz_path("ws"), -1);
+    read_cameras(fuzz_path("ws"), -1, &(struct orl_known_gap){0});
     use_scene(fuzz_path("ws"));
     use_unfinished(fuzz_path("ws"));
 }

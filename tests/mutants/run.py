@@ -4,8 +4,8 @@
 usage: tests/mutants/run.py BUILD [--changed COMMIT] [--minutes N] [--jobs N] [--table FILE] [NAME...]
        tests/mutants/run.py --texts LIST
 
-BUILD is a build folder (Ninja) whose tests are built. A change of list.json to a C file is made in a
-copy, which is compiled and linked into the test ahead of the library; one to a shader in a copy of
+BUILD is a build folder (Ninja) whose tests are built. A change of list.json to a C file, or to a script that the
+program carries, is made in a copy, which is compiled and linked into the test ahead of the library; one to a shader in a copy of
 all shaders, which the test reads (ORIEL_TEST_SHADERS); one to a file of a published site in a copy of
 that, on which the named tests of tests/web/test_page.py run in a browser (page/CLASS.TEST). Neither the
 source nor BUILD is touched.
@@ -35,6 +35,8 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 PAGE = "page/"  # of tests in a browser
+# Scripts that the program carries as arrays of bytes, and the C files of the build folder that are made of them.
+EMBEDDED = {"src/scene/known_cameras.py": "src/scene/orl_known_script.c"}
 # Of a test. A change that makes it endless is noticed; a busy machine must not look like one.
 CPU_LIMIT_S, WAIT_S = 100, 3600
 
@@ -188,6 +190,11 @@ def prepare(build, entry, work):
         with open(os.path.join(work, entry["file"]), "w") as file:
             file.write(text)
         return lambda test: build.passes(build.own_program(test), shaders=shaders)
+    if entry["file"] in EMBEDDED:
+        path = os.path.realpath(os.path.join(build.folder, EMBEDDED[entry["file"]]))
+        with open(path) as file:
+            head = file.read().partition("{")[0]
+        text = head + "{" + ",".join(map(str, text.encode() + b"\0")) + "};\n"
     changed = build.object_of(path, text, work)
     return lambda test: build.passes(build.program(test, changed, work))
 
