@@ -5,7 +5,7 @@
 //
 // ROW(field, flag, kind, help[, of]): the member of the struct, the option without "--", one of the
 // kinds below with default, range and placeholder, one line of help, and what the option is part of
-// (struct orl_option). ORL_OPTION_MEMBER, ORL_OPTION_PRESET and ORL_OPTION_ROWS make the struct, its
+// (struct orl_option). Options of rendering have more (option_list.h). ORL_OPTION_MEMBER, ORL_OPTION_PRESET and ORL_OPTION_ROWS make the struct, its
 // defaults and the rows of such a table; core/arguments.h parses, prints and records by the rows.
 #ifndef ORIEL_OPTION_ROW_H
 #define ORIEL_OPTION_ROW_H
@@ -14,6 +14,9 @@
 #include <stdint.h>
 
 #include "oriel/names.h"
+
+enum { ORL_OPTION_TEXT = 32, ORL_TRIES_MAX = 6 };
+typedef char orl_word[ORL_OPTION_TEXT];
 
 struct orl_size {
     int width, height; // 0 0: not given
@@ -40,21 +43,39 @@ enum orl_value_kind {
     ORL_VALUE_CHOICE, // enum, or int where -1 is none; one of a few names
     ORL_VALUE_PART,   // struct orl_part: K/N
     ORL_VALUE_BLOCK,  // struct orl_test_block: A:B
+    ORL_VALUE_FLOAT,  // float in [low, high]
+    ORL_VALUE_WORD,   // orl_word: one of a few names, and zeros
+    ORL_VALUE_SLOT,   // pointer to one of a few structs that begin with their names
 };
 
 struct orl_option {
     const char *name; // without "--"; NULL after the last row
     enum orl_value_kind kind;
-    size_t offset;    // of the member
+    size_t offset, size; // of the member
     double preset, low, high;
-    const char *words; // of a choice: its names, each followed by a space
-    const char *(*name_at)(size_t index); // or this; NULL past the last
-    const char *meta;  // placeholder such as "DIR"
+    // One of these has the names of a choice. An extension, as of a file, is no part of a name.
+    const char *words;                    // each followed by a space
+    const char *(*name_at)(size_t index); // NULL past the last
+    const void *const *slots;             // ended by NULL
+    const char *meta;  // placeholder such as "DIR"; of a FLOAT its unit
     const char *help;
     // What the option is part of, as words; "-": never recorded. STAGE=KEY: the stage's key has the
     // value under this name. STAGE?KEY: only if it is not the default.
     const char *of;
+    // Of an option of rendering, which is given as NAME=VALUE: the choices that make anything read it, as
+    // "NAME=VALUE" separated by spaces, any of which is enough; "": every frame does. NULL: one of a command.
+    const char *readers;
+    double tries[ORL_TRIES_MAX]; // values that oriel tune tries, ascending
+    int try_count;               // 0: oriel tune does not change it
 };
+// The `index`-th name of a choice; false past the end.
+bool orl_option_name(const struct orl_option *row, size_t index, char name[ORL_OPTION_TEXT]);
+// Prints a number or choice as it is given; false: it is not given.
+bool orl_option_print(const struct orl_option *row, const void *values, char text[ORL_OPTION_TEXT]);
+// The value of a number. That of a size in memory is in MiB.
+double orl_option_number(const struct orl_option *row, const void *values);
+// True if both have the same value.
+bool orl_option_equal(const struct orl_option *row, const void *a, const void *b);
 
 // An enum and its names from one list, #define LIST(NAME) NAME(ENUMERATOR, "name") ...
 #define ORL_ENUMERATOR(value, name) value,
@@ -76,6 +97,9 @@ struct orl_option {
 #define ORL_MEMBER_NAMED(name_at, preset, meta) int
 #define ORL_MEMBER_PART struct orl_part
 #define ORL_MEMBER_BLOCK struct orl_test_block
+#define ORL_MEMBER_FLOAT(preset, low, high, unit) float
+#define ORL_MEMBER_WORD(name_at, preset) orl_word
+#define ORL_MEMBER_SLOT(type, slots, preset) const struct type *
 #define ORL_OPTION_MEMBER(field, flag, kind, ...) ORL_MEMBER_##kind field;
 
 #define ORL_PRESET_FLAG false
@@ -93,6 +117,9 @@ struct orl_option {
 #define ORL_PRESET_NAMED(name_at, preset, meta) preset
 #define ORL_PRESET_PART {0, 0}
 #define ORL_PRESET_BLOCK {0, 0}
+#define ORL_PRESET_FLOAT(preset, low, high, unit) preset
+#define ORL_PRESET_WORD(name_at, preset) preset
+#define ORL_PRESET_SLOT(type, slots, preset) preset
 #define ORL_OPTION_PRESET(field, flag, kind, ...) .field = ORL_PRESET_##kind,
 
 // A member of another struct with the same option, from `o`.
@@ -118,9 +145,14 @@ struct orl_option {
     .kind = ORL_VALUE_CHOICE, .preset = value, .name_at = function, .meta = text
 #define ORL_FACTS_PART .kind = ORL_VALUE_PART, .meta = "K/N"
 #define ORL_FACTS_BLOCK .kind = ORL_VALUE_BLOCK, .meta = "A:B"
+#define ORL_FACTS_FLOAT(value, least, most, unit) \
+    .kind = ORL_VALUE_FLOAT, .low = least, .high = most, .meta = unit
+#define ORL_FACTS_WORD(function, value) .kind = ORL_VALUE_WORD, .name_at = function, .meta = ""
+#define ORL_FACTS_SLOT(type, list, value) .kind = ORL_VALUE_SLOT, .slots = list, .meta = ""
 // `options_here`: a name that ORL_OPTION_ROWS gives to the table's struct.
 #define ORL_OPTION_FACTS(field, flag, facts, ...) \
-    {.name = flag, .offset = offsetof(options_here, field), ORL_FACTS_##facts, __VA_ARGS__},
+    {.name = flag, .offset = offsetof(options_here, field), .size = sizeof((options_here *)0)->field, \
+     ORL_FACTS_##facts, __VA_ARGS__},
 
 // Defines a function that returns the rows of a table.
 #define ORL_OPTION_ROWS(function, type, list)                                                    \

@@ -11,18 +11,19 @@
 
 // --- methods and options ---
 
-enum orl_fill {
-    ORL_FILL_NONE,
-    ORL_FILL_COLOR,
-    ORL_FILL_DEPTH,
-    ORL_FILL_GROUND, // as DEPTH, but no farther than the scene's ground
-    ORL_FILL_ROOM,   // photographs projected on the walls around
-    ORL_FILL_COUNT
-};
-enum orl_alignment_use { ORL_ALIGNMENT_OFF, ORL_ALIGNMENT_ON };
-enum orl_antialias { ORL_ANTIALIAS_OFF, ORL_ANTIALIAS_ON };
-enum orl_median { ORL_MEDIAN_OFF, ORL_MEDIAN_HOLES, ORL_MEDIAN_ALL };
-enum orl_sampling { ORL_SAMPLING_BILINEAR, ORL_SAMPLING_BICUBIC };
+// GROUND: as DEPTH, but no farther than the scene's ground. ROOM: photographs projected on the walls around.
+#define ORL_FILLS(NAME) \
+    NAME(ORL_FILL_NONE, "none") NAME(ORL_FILL_COLOR, "color") NAME(ORL_FILL_DEPTH, "depth") \
+    NAME(ORL_FILL_GROUND, "ground") NAME(ORL_FILL_ROOM, "room")
+enum orl_fill { ORL_FILLS(ORL_ENUMERATOR) ORL_FILL_COUNT };
+#define ORL_ALIGNMENT_USES(NAME) NAME(ORL_ALIGNMENT_OFF, "off") NAME(ORL_ALIGNMENT_ON, "on")
+enum orl_alignment_use { ORL_ALIGNMENT_USES(ORL_ENUMERATOR) };
+#define ORL_ANTIALIASES(NAME) NAME(ORL_ANTIALIAS_OFF, "off") NAME(ORL_ANTIALIAS_ON, "on")
+enum orl_antialias { ORL_ANTIALIASES(ORL_ENUMERATOR) };
+#define ORL_MEDIANS(NAME) NAME(ORL_MEDIAN_OFF, "off") NAME(ORL_MEDIAN_HOLES, "holes") NAME(ORL_MEDIAN_ALL, "all")
+enum orl_median { ORL_MEDIANS(ORL_ENUMERATOR) };
+#define ORL_SAMPLINGS(NAME) NAME(ORL_SAMPLING_BILINEAR, "bilinear") NAME(ORL_SAMPLING_BICUBIC, "bicubic")
+enum orl_sampling { ORL_SAMPLINGS(ORL_ENUMERATOR) };
 // How photographs are sampled: colours as stored, or radiance (struct orl_renderer_params).
 enum orl_sample { ORL_SAMPLE_SRGB, ORL_SAMPLE_RADIANCE };
 
@@ -34,61 +35,20 @@ enum orl_layer {
     ORL_LAYER_CONFIDENCE = 8,
 };
 
-enum { ORL_OPTION_NAME_BYTES = 32 };
-
-// Every key of --set, with range, unit, readers and help in option_list.h, and three fields that are
+// Every key of --set, with range, unit, readers and help in option_list.h, and two fields that are
 // no keys:
 struct orl_render_params {
     unsigned leave_out;     // layers that are not read back, whose images stay empty
     enum orl_sample sample; // decides which options are read; set by the renderer
-#define ORL_SLOT_FIELD(field, type, preset, readers, help) const struct type *field;
-#define ORL_FILE_FIELD(field, preset, readers, help) char field[ORL_OPTION_NAME_BYTES];
-#define ORL_CHOICE_FIELD(field, type, names, preset, readers, help) enum type field;
-#define ORL_NUMBER_FIELD(field, preset, least, most, unit, readers, tries, help) float field;
-    ORL_RENDER_OPTIONS(ORL_SLOT_FIELD, ORL_FILE_FIELD, ORL_CHOICE_FIELD, ORL_NUMBER_FIELD)
-#undef ORL_SLOT_FIELD
-#undef ORL_FILE_FIELD
-#undef ORL_CHOICE_FIELD
-#undef ORL_NUMBER_FIELD
+    ORL_RENDER_OPTIONS(ORL_OPTION_MEMBER)
 };
 
-enum orl_option_kind {
-    ORL_OPTION_SLOT,
-    ORL_OPTION_FILE,
-    ORL_OPTION_CHOICE,
-    ORL_OPTION_NUMBER,
-};
-enum { ORL_TRIES_MAX = 6 };
-
-// One row of the option table.
-struct orl_render_option {
-    const char *key;
-    enum orl_option_kind kind;
-    size_t offset;       // in struct orl_render_params
-    const char *names;   // of a choice: separated by spaces, in the order of its enum
-    double least, most;  // of a number: range
-    const char *unit;    // of a number
-    const char *readers; // see option_list.h
-    const char *help;
-    double tries[ORL_TRIES_MAX]; // of a number: values that oriel tune tries, ascending
-    int try_count;               // 0: oriel tune does not change it
-};
-// Terminated by a NULL key.
-extern const struct orl_render_option orl_render_options[];
-// The option with this key; NULL: none.
-const struct orl_render_option *orl_render_option_find(const char *key);
-// The `index`-th valid name of a slot or choice; false past the end.
-bool orl_render_option_name(const struct orl_render_option *option, size_t index,
-                            char name[ORL_OPTION_NAME_BYTES]);
+// The rows of these, terminated by a NULL name.
+const struct orl_option *orl_render_options(void);
+// The option of "KEY" or "KEY=VALUE"; NULL: none.
+const struct orl_option *orl_render_option_find(const char *key);
 // True if any part of the frame reads this option with these choices.
-bool orl_render_option_read(const struct orl_render_option *option,
-                            const struct orl_render_params *params);
-// The value of an option that is a number.
-double orl_render_option_number(const struct orl_render_option *option,
-                                const struct orl_render_params *params);
-// Prints the option's value in the form that --set takes.
-void orl_render_option_print(const struct orl_render_option *option,
-                             const struct orl_render_params *params, char *text, size_t size);
+bool orl_render_option_read(const struct orl_option *option, const struct orl_render_params *params);
 
 // A method is a row of choices: its name, description, publication and parameters.
 struct orl_method {

@@ -1,9 +1,9 @@
 // oriel methods: lists the rendering methods and their options.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
+#include "core/arguments.h"
 #include "oriel/render.h"
 
 static void print_list(void)
@@ -18,22 +18,14 @@ static void print_list(void)
 }
 
 // Prints an option's value and range.
-static void print_option(const struct orl_render_option *option,
-                         const struct orl_render_params *params)
+static void print_option(const struct orl_option *option, const struct orl_render_params *params)
 {
-    char value[ORL_OPTION_NAME_BYTES], name[ORL_OPTION_NAME_BYTES], allowed[256] = "";
-    orl_render_option_print(option, params, value, sizeof value);
-    if (option->kind == ORL_OPTION_NUMBER) {
-        snprintf(value, sizeof value, "%.6g", atof(value)); // without digits that a float lacks
-        snprintf(allowed, sizeof allowed, "%g to %g%s%s", option->least, option->most,
-                 option->unit[0] ? " " : "", option->unit);
-    }
-    for (size_t i = 0; option->kind != ORL_OPTION_NUMBER && orl_render_option_name(option, i, name);
-         i++) {
-        size_t used = strlen(allowed);
-        snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? ", " : "", name);
-    }
-    printf("%-18s %-12s %-30s %s\n", option->key, value, allowed, option->help);
+    char value[ORL_OPTION_TEXT], allowed[ORL_OPTION_ALLOWED + 32];
+    orl_option_print(option, params, value);
+    orl_option_allowed(option, allowed);
+    size_t used = strlen(allowed);
+    snprintf(allowed + used, sizeof allowed - used, "%s%s", *option->meta ? " " : "", option->meta);
+    printf("%-18s %-12s %-30s %s\n", option->name, value, allowed, option->help);
 }
 
 static enum orl_result print_method(const struct orl_log *log, const char *name)
@@ -46,7 +38,7 @@ static enum orl_result print_method(const struct orl_log *log, const char *name)
     printf("%s: %s\nsource: %s\nasks: %s\ncost: %s\n\n%-18s %-12s %-30s %s\n", method->name,
            method->description, method->source, orl_method_asks(method), cost, "option", "value",
            "allowed", "what it is");
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
         if (orl_render_option_read(o, &method->params))
             print_option(o, &method->params);
     return ORL_OK;

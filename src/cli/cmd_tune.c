@@ -19,8 +19,11 @@ COMMAND_OPTIONS(tune_options, TUNE_OPTIONS)
 static void print_trial(void *priv, const struct orl_trial *trial)
 {
     (void)priv;
-    printf("%-18s %9s %9.3f %8.4f  %s\n", trial->key ? trial->key : "start", trial->value,
-           trial->psnr_db, trial->ssim, trial->kept ? "kept" : "");
+    char value[ORL_OPTION_TEXT] = "";
+    if (trial->key)
+        snprintf(value, sizeof value, "%g", trial->value);
+    printf("%-18s %9s %9.3f %8.4f  %s\n", trial->key ? trial->key : "start", value, trial->psnr_db,
+           trial->ssim, trial->kept ? "kept" : "");
     fflush(stdout);
 }
 

@@ -13,13 +13,9 @@ void help_facts(const struct orl_option *row, char facts[HELP_FACTS])
     else if (!choice && !told && orl_option_has_preset(row))
         snprintf(preset, sizeof preset, "default %.10g", row->preset);
     facts[0] = '\0';
-    for (size_t i = 0; choice && orl_option_name(row, i, name); i++) {
-        size_t used = strlen(facts);
-        snprintf(facts + used, HELP_FACTS - used, "%s%s", i ? ", " : "", name);
-    }
     // Limits that only guard against nonsense are not worth telling.
-    if ((row->kind == ORL_VALUE_INT || row->kind == ORL_VALUE_NUMBER) && row->high < 1000)
-        snprintf(facts, HELP_FACTS, "%.10g to %.10g", row->low, row->high);
+    if (choice || ((row->kind == ORL_VALUE_INT || row->kind == ORL_VALUE_NUMBER) && row->high < 1000))
+        orl_option_allowed(row, facts);
     size_t used = strlen(facts);
     snprintf(facts + used, HELP_FACTS - used, "%s%s", used && *preset ? "; " : "", preset);
 }

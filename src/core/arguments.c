@@ -31,34 +31,64 @@ bool orl_option_has_preset(const struct orl_option *row)
 
 bool orl_option_name(const struct orl_option *row, size_t index, char name[ORL_OPTION_TEXT])
 {
-    const char *found = row->name_at ? row->name_at(index) : row->words;
-    for (size_t i = 0; !row->name_at && i < index && *found; i++)
-        found += strcspn(found, " ") + 1;
+    const char *found = row->words;
+    memset(name, 0, ORL_OPTION_TEXT);
+    if (row->slots)
+        found = row->slots[index] ? *(const char *const *)row->slots[index] : NULL;
+    else if (row->name_at)
+        found = row->name_at(index);
+    else
+        for (size_t i = 0; found && i < index && *found; i++)
+            found += strcspn(found, " ") + 1;
     if (!found || !*found)
         return false;
-    snprintf(name, ORL_OPTION_TEXT, "%.*s", (int)strcspn(found, " "), found);
+    snprintf(name, ORL_OPTION_TEXT, "%.*s", (int)strcspn(found, " ."), found);
     return true;
+}
+
+void orl_option_allowed(const struct orl_option *row, char text[ORL_OPTION_ALLOWED])
+{
+    char name[ORL_OPTION_TEXT];
+    size_t used = 0;
+    snprintf(text, ORL_OPTION_ALLOWED, "%.10g to %.10g", row->low, row->high);
+    for (size_t i = 0; used < ORL_OPTION_ALLOWED && orl_option_name(row, i, name); i++)
+        used += (size_t)snprintf(text + used, ORL_OPTION_ALLOWED - used, "%s%s", i ? ", " : "", name);
+}
+
+bool orl_option_equal(const struct orl_option *row, const void *a, const void *b)
+{
+    return memcmp(value_of(row, a), value_of(row, b), row->size) == 0;
 }
 
 // --- parsing ---
 
+static enum orl_result refuse(const struct orl_log *log, const struct orl_option *row, const char *text,
+                              const char *what, const char *allowed)
+{
+    return orl_fail(log, ORL_ERR_ARGUMENT, row->readers ? "%s=%s: must be %s%s" : "--%s %s: must be %s%s",
+                    row->name, text, what, allowed);
+}
+
 static enum orl_result set_number(const struct orl_log *log, const struct orl_option *row,
                                   const char *text, void *field)
 {
-    char *end;
-    bool whole = row->kind != ORL_VALUE_NUMBER;
+    char *end, allowed[ORL_OPTION_ALLOWED];
+    bool whole = row->kind != ORL_VALUE_NUMBER && row->kind != ORL_VALUE_FLOAT;
     errno = 0;
     double value = strtod(text, &end);
     if (end == text || *end || errno || !isfinite(value) || value < row->low ||
-        value > row->high || (whole && value != floor(value)))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--%s %s: must be a %snumber from %g to %g",
-                        row->name, text, whole ? "whole " : "", row->low, row->high);
+        value > row->high || (whole && value != floor(value))) {
+        orl_option_allowed(row, allowed);
+        return refuse(log, row, text, whole ? "a whole number from " : "a number from ", allowed);
+    }
     if (row->kind == ORL_VALUE_INT)
         *(int *)field = (int)value;
     else if (row->kind == ORL_VALUE_SEED)
         *(uint32_t *)field = (uint32_t)value;
     else if (row->kind == ORL_VALUE_MIB)
         *(size_t *)field = (size_t)value << 20;
+    else if (row->kind == ORL_VALUE_FLOAT)
+        *(float *)field = (float)value;
     else
         *(double *)field = value;
     return ORL_OK;
@@ -96,18 +126,20 @@ static enum orl_result add_to_list(const struct orl_log *log, const struct orl_o
 }
 
 static enum orl_result set_choice(const struct orl_log *log, const struct orl_option *row,
-                                  const char *text, int *field)
+                                  const char *text, void *field)
 {
-    char allowed[256] = "", name[ORL_OPTION_TEXT];
+    char allowed[ORL_OPTION_ALLOWED], name[ORL_OPTION_TEXT];
     for (int i = 0; orl_option_name(row, (size_t)i, name); i++) {
-        size_t used = strlen(allowed);
-        if (strcmp(name, text) == 0) {
-            *field = i;
-            return ORL_OK;
-        }
-        snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? ", " : "", name);
+        if (strcmp(name, text) != 0)
+            continue;
+        const void *value = row->kind == ORL_VALUE_WORD   ? (const void *)name
+                            : row->kind == ORL_VALUE_SLOT ? (const void *)&row->slots[i]
+                                                          : &i;
+        memcpy(field, value, row->size);
+        return ORL_OK;
     }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "--%s %s: must be one of %s", row->name, text, allowed);
+    orl_option_allowed(row, allowed);
+    return refuse(log, row, text, "one of ", allowed);
 }
 
 static enum orl_result set_part(const struct orl_log *log, const struct orl_option *row,
@@ -116,8 +148,7 @@ static enum orl_result set_part(const struct orl_log *log, const struct orl_opti
     char rest;
     int k, n;
     if (sscanf(text, "%d/%d%c", &k, &n, &rest) != 2 || k < 1 || k > n)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--%s %s: not K/N with K from 1 to N", row->name,
-                        text);
+        return refuse(log, row, text, "K/N with K from 1 to N", "");
     *part = (struct orl_part){k - 1, n};
     return ORL_OK;
 }
@@ -129,15 +160,15 @@ static enum orl_result set_block(const struct orl_log *log, const struct orl_opt
     struct orl_test_block told;
     if (sscanf(text, "%d:%d%c", &told.first, &told.end, &rest) != 2 || told.first < 0 ||
         told.end <= told.first)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--%s %s: must be A:B with A from 0 and B above A",
-                        row->name, text);
+        return refuse(log, row, text, "A:B with A from 0 and B above A", "");
     *block = told;
     return ORL_OK;
 }
 
-static enum orl_result set_value(const struct orl_log *log, const struct orl_option *row,
-                                 const char *text, void *field)
+enum orl_result orl_option_set(const struct orl_log *log, const struct orl_option *row, const char *text,
+                               void *values)
 {
+    void *field = field_of(row, values);
     switch (row->kind) {
     case ORL_VALUE_FLAG:
         *(bool *)field = true;
@@ -152,6 +183,8 @@ static enum orl_result set_value(const struct orl_log *log, const struct orl_opt
     case ORL_VALUE_LIST:
         return add_to_list(log, row, text, field);
     case ORL_VALUE_CHOICE:
+    case ORL_VALUE_WORD:
+    case ORL_VALUE_SLOT:
         return set_choice(log, row, text, field);
     case ORL_VALUE_PART:
         return set_part(log, row, text, field);
@@ -202,7 +235,7 @@ enum orl_result orl_arguments_parse(const struct orl_log *log, const char *comma
         if (flag ? text != NULL : !text && ++i >= argc)
             return orl_fail(log, ORL_ERR_ARGUMENT, "%s: --%s %s", command, row->name,
                             flag ? "takes no value" : "needs a value");
-        ORL_TRY(set_value(log, row, text ? text : argv[i], field_of(row, set->values)));
+        ORL_TRY(orl_option_set(log, row, text ? text : argv[i], set->values));
     }
     return ORL_OK;
 }
@@ -246,24 +279,70 @@ static json_t *list_text(const struct orl_names *names)
     return text;
 }
 
-static json_t *number_text(const struct orl_option *row, double value)
+double orl_option_number(const struct orl_option *row, const void *values)
 {
-    return value >= row->low && value <= row->high ? json_sprintf("%.10g", value) : NULL;
+    const void *field = value_of(row, values);
+    switch (row->kind) {
+    case ORL_VALUE_SEED:
+        return *(const uint32_t *)field;
+    case ORL_VALUE_MIB:
+        return (double)(*(const size_t *)field >> 20);
+    case ORL_VALUE_NUMBER:
+        return *(const double *)field;
+    case ORL_VALUE_FLOAT:
+        return (double)*(const float *)field;
+    default:
+        return *(const int *)field;
+    }
 }
 
-static json_t *choice_text(const struct orl_option *row, int value)
+// A float in as few digits as say what it is: 0.1, not 0.100000001.
+static bool print_float(float value, char text[ORL_OPTION_TEXT])
 {
-    char name[ORL_OPTION_TEXT];
-    return value >= 0 && orl_option_name(row, (size_t)value, name) ? json_string(name) : NULL;
+    snprintf(text, ORL_OPTION_TEXT, "%.6g", (double)value);
+    if (strtof(text, NULL) != value)
+        snprintf(text, ORL_OPTION_TEXT, "%.9g", (double)value);
+    return true;
+}
+
+static bool print_number(const struct orl_option *row, double value, char text[ORL_OPTION_TEXT])
+{
+    snprintf(text, ORL_OPTION_TEXT, "%.10g", value);
+    return value >= row->low && value <= row->high;
+}
+
+bool orl_option_print(const struct orl_option *row, const void *values, char text[ORL_OPTION_TEXT])
+{
+    const void *field = value_of(row, values), *slot;
+    const struct orl_size *size = field;
+    const struct orl_part *part = field;
+    const struct orl_test_block *block = field;
+    switch (row->kind) {
+    case ORL_VALUE_CHOICE:
+        return *(const int *)field >= 0 && orl_option_name(row, (size_t)*(const int *)field, text);
+    case ORL_VALUE_WORD:
+        return snprintf(text, ORL_OPTION_TEXT, "%s", (const char *)field) > 0;
+    case ORL_VALUE_SLOT:
+        memcpy(&slot, field, sizeof slot);
+        return snprintf(text, ORL_OPTION_TEXT, "%s", *(const char *const *)slot) > 0;
+    case ORL_VALUE_SIZE:
+        return snprintf(text, ORL_OPTION_TEXT, "%dx%d", size->width, size->height) > 0 && size->width;
+    case ORL_VALUE_PART:
+        return snprintf(text, ORL_OPTION_TEXT, "%d/%d", part->index + 1, part->count) > 0 && part->count;
+    case ORL_VALUE_BLOCK:
+        return snprintf(text, ORL_OPTION_TEXT, "%d:%d", block->first, block->end) > 0 && block->end;
+    case ORL_VALUE_FLOAT:
+        return print_float(*(const float *)field, text);
+    default:
+        return print_number(row, orl_option_number(row, values), text);
+    }
 }
 
 // As it is given on a command line; NULL: not given.
 static json_t *text_of(const struct orl_option *row, const void *values)
 {
     const void *field = value_of(row, values);
-    const struct orl_size *size = field;
-    const struct orl_part *part = field;
-    const struct orl_test_block *block = field;
+    char text[ORL_OPTION_TEXT];
     switch (row->kind) {
     case ORL_VALUE_FLAG:
         return *(const bool *)field ? json_true() : NULL;
@@ -272,26 +351,11 @@ static json_t *text_of(const struct orl_option *row, const void *values)
     case ORL_VALUE_TEXT:
     case ORL_VALUE_NEEDED:
         return *(const char *const *)field ? json_string(*(const char *const *)field) : NULL;
-    case ORL_VALUE_INT:
-        return number_text(row, *(const int *)field);
-    case ORL_VALUE_NUMBER:
-        return number_text(row, *(const double *)field);
-    case ORL_VALUE_SEED:
-        return json_sprintf("%u", *(const uint32_t *)field);
-    case ORL_VALUE_MIB:
-        return number_text(row, (double)(*(const size_t *)field >> 20));
-    case ORL_VALUE_SIZE:
-        return size->width ? json_sprintf("%dx%d", size->width, size->height) : NULL;
     case ORL_VALUE_LIST:
         return list_text(field);
-    case ORL_VALUE_CHOICE:
-        return choice_text(row, *(const int *)field);
-    case ORL_VALUE_PART:
-        return part->count ? json_sprintf("%d/%d", part->index + 1, part->count) : NULL;
-    case ORL_VALUE_BLOCK:
-        return block->end ? json_sprintf("%d:%d", block->first, block->end) : NULL;
+    default:
+        return orl_option_print(row, values, text) ? json_string(text) : NULL;
     }
-    return NULL;
 }
 
 // Where the word begins in `of`, which may be NULL; it ends with a space, '=' or '?'.
@@ -319,23 +383,23 @@ void orl_arguments_record(json_t *list, const struct orl_option *rows, const voi
     }
 }
 
-static bool is_preset(const struct orl_option *row, const void *field)
+static bool is_preset(const struct orl_option *row, const void *values)
 {
-    double value = row->kind == ORL_VALUE_NUMBER ? *(const double *)field : *(const int *)field;
+    double value = orl_option_number(row, values);
     return !(value < row->preset) && !(value > row->preset);
 }
 
-// As keys of stages have it: numbers and bytes as such, else its text.
-static json_t *setting_of(const struct orl_option *row, const void *values)
+json_t *orl_option_json(const struct orl_option *row, const void *values)
 {
-    const void *field = value_of(row, values);
     json_t *text = text_of(row, values), *number = NULL;
     if (text && row->kind == ORL_VALUE_MIB)
-        number = json_integer((json_int_t)*(const size_t *)field);
+        number = json_integer((json_int_t)*(const size_t *)value_of(row, values));
     else if (text && row->kind == ORL_VALUE_NUMBER)
-        number = json_real(*(const double *)field);
+        number = json_real(orl_option_number(row, values));
+    else if (text && row->kind == ORL_VALUE_FLOAT)
+        number = json_real(atof(json_string_value(text)));
     else if (text && (row->kind == ORL_VALUE_INT || row->kind == ORL_VALUE_SEED))
-        number = json_integer(*(const int *)field);
+        number = json_integer((json_int_t)orl_option_number(row, values));
     else
         return text;
     json_decref(text);
@@ -354,9 +418,9 @@ void orl_arguments_settings(json_t *settings, const struct orl_option *rows, con
 {
     for (const struct orl_option *row = rows; row->name; row++) {
         const char *key = find_key(row, stage);
-        if (!*key || (*key == '?' && orl_option_has_preset(row) && is_preset(row, value_of(row, values))))
+        if (!*key || (*key == '?' && orl_option_has_preset(row) && is_preset(row, values)))
             continue;
-        json_t *value = setting_of(row, values);
+        json_t *value = orl_option_json(row, values);
         if (value)
             json_object_setn_new(settings, key + 1, strcspn(key + 1, " "), value);
     }
@@ -373,8 +437,8 @@ enum orl_result orl_arguments_take(const struct orl_log *log, const json_t *sett
         snprintf(number, sizeof number, "%.10g",
                  json_number_value(value) / (row->kind == ORL_VALUE_MIB ? 1 << 20 : 1));
         if (value)
-            ORL_TRY(set_value(log, row, json_is_string(value) ? json_string_value(value) : number,
-                              field_of(row, values)));
+            ORL_TRY(orl_option_set(log, row, json_is_string(value) ? json_string_value(value) : number,
+                                   values));
     }
     return ORL_OK;
 }

@@ -30,10 +30,15 @@ enum orl_result orl_size_parse(const struct orl_log *log, const char *option, co
 // Releases the lists among the values.
 void orl_arguments_finish(const struct orl_option *rows, void *values);
 
-enum { ORL_OPTION_TEXT = 32 }; // bytes of the name of a choice
-// The `index`-th name of a choice; false past the end.
-bool orl_option_name(const struct orl_option *row, size_t index, char name[ORL_OPTION_TEXT]);
 bool orl_option_has_preset(const struct orl_option *row);
+// Takes the text. ORL_ERR_ARGUMENT, logged with what is allowed: it is no value of this option.
+enum orl_result orl_option_set(const struct orl_log *log, const struct orl_option *row, const char *text,
+                               void *values) ORL_CHECK_RESULT;
+enum { ORL_OPTION_ALLOWED = 256 };
+// The names of a choice, or the range of a number.
+void orl_option_allowed(const struct orl_option *row, char text[ORL_OPTION_ALLOWED]);
+// Numbers and bytes as such, else the text that is given; NULL: not given.
+json_t *orl_option_json(const struct orl_option *row, const void *values);
 
 // Appends "--name", "value" to a list for every value that was given or has a default, of the rows
 // whose `of` has the word; NULL: all that are recorded. The same arguments, parsed, give the same

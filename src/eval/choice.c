@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/arguments.h"
 #include "core/memory.h"
 
 // The setting of a paper's method on the proxy and background of the first method, oriel.
@@ -42,16 +43,9 @@ enum orl_result orl_choice_make(const struct orl_log *log, const struct orl_scen
 json_t *orl_choice_settings(const struct orl_choice *choice)
 {
     json_t *settings = json_object();
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        char own[ORL_OPTION_NAME_BYTES], value[ORL_OPTION_NAME_BYTES];
-        orl_render_option_print(o, &choice->method->params, own, sizeof own);
-        orl_render_option_print(o, &choice->params, value, sizeof value);
-        if (strcmp(own, value) == 0)
-            continue;
-        snprintf(own, sizeof own, "%.6g", atof(value)); // without digits that a float lacks: 0.1, not 0.100000001
-        json_object_set_new(settings, o->key,
-                            o->kind == ORL_OPTION_NUMBER ? json_real(atof(own)) : json_string(value));
-    }
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
+        if (!orl_option_equal(o, &choice->method->params, &choice->params))
+            json_object_set_new(settings, o->name, orl_option_json(o, &choice->params));
     return settings;
 }
 

@@ -64,13 +64,13 @@ static enum orl_result try_choice(struct orl_search *s, const struct orl_choice 
 
 // --- numbers ---
 
-static float *field(struct orl_render_params *params, const struct orl_render_option *option)
+static float *field(struct orl_render_params *params, const struct orl_option *option)
 {
     return (float *)((char *)params + option->offset);
 }
 
 // The next of the option's values to try beyond `from`; NAN: none.
-static double next_try(const struct orl_render_option *option, double from, int direction)
+static double next_try(const struct orl_option *option, double from, int direction)
 {
     double next = NAN;
     for (int i = 0; i < option->try_count; i++) {
@@ -84,20 +84,20 @@ static double next_try(const struct orl_render_option *option, double from, int 
     return next;
 }
 
-static enum orl_result move_number(struct orl_search *s, const struct orl_render_option *option,
+static enum orl_result move_number(struct orl_search *s, const struct orl_option *option,
                                    bool *better)
 {
     enum orl_result result = ORL_OK;
     bool moved = false, same = false;
     for (int direction = 1; direction >= -1 && !moved && !same; direction -= 2) {
-        struct orl_trial trial = {.key = option->key, .kept = true};
+        struct orl_trial trial = {.key = option->name, .kept = true};
         while (result == ORL_OK && trial.kept && !is_over(s)) {
             struct orl_choice choice = s->best;
             double value = next_try(option, (double)*field(&choice.params, option), direction);
             if (isnan(value))
                 break;
             *field(&choice.params, option) = (float)value;
-            snprintf(trial.value, sizeof trial.value, "%.6g", value);
+            trial.value = value;
             result = try_choice(s, &choice, &trial, &same);
             moved = moved || (result == ORL_OK && trial.kept);
         }
@@ -106,25 +106,25 @@ static enum orl_result move_number(struct orl_search *s, const struct orl_render
     return result;
 }
 
-static bool is_chosen(const struct orl_search *s, const struct orl_render_option *option,
+static bool is_chosen(const struct orl_search *s, const struct orl_option *option,
                       const struct orl_names *keys)
 {
     if (option->try_count == 0 || !orl_render_option_read(option, &s->best.params))
         return false;
-    return !keys || !keys->count || orl_names_contain(keys, option->key);
+    return !keys || !keys->count || orl_names_contain(keys, option->name);
 }
 
-// Searches one number after another among its values in orl_render_tries, upwards and downwards
+// Searches one number after another among the values that its row has to try, upwards and downwards
 // while the result gets better. Repeats rounds over all of them until a round brings no gain.
 static enum orl_result numbers(struct orl_search *s, const struct orl_names *keys)
 {
     bool better = true;
     s->planned = (double)s->trial_count;
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
         s->planned += is_chosen(s, o, keys) ? 3 : 0;
     for (int round = 0; better && round < ROUNDS_MAX && !is_over(s); round++) {
         better = false;
-        for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+        for (const struct orl_option *o = orl_render_options(); o->name; o++)
             if (is_chosen(s, o, keys))
                 ORL_TRY(move_number(s, o, &better));
     }
@@ -135,7 +135,7 @@ static enum orl_result numbers(struct orl_search *s, const struct orl_names *key
 static enum orl_result check_keys(const struct orl_log *log, const struct orl_names *keys)
 {
     for (size_t i = 0; keys && i < keys->count; i++) {
-        const struct orl_render_option *option = orl_render_option_find(keys->items[i]);
+        const struct orl_option *option = orl_render_option_find(keys->items[i]);
         if (!option || option->try_count == 0)
             return orl_fail(log, ORL_ERR_ARGUMENT, "%s: not an option that can be tuned",
                             keys->items[i]);
@@ -200,7 +200,7 @@ json_t *orl_search_report(const struct orl_search *s, const char *device)
     for (size_t i = 0; i < s->trial_count; i++) {
         const struct orl_trial *t = &s->trials[i];
         json_array_append_new(trials, json_pack("{s:s?, s:o, s:f, s:f, s:b}", "key", t->key, "value",
-                                                t->key ? json_real(atof(t->value)) : json_null(),
+                                                t->key ? json_real(t->value) : json_null(),
                                                 "psnr_db", t->psnr_db, "ssim", t->ssim, "kept",
                                                 t->kept));
     }

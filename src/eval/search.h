@@ -17,7 +17,7 @@ enum { ORL_SEARCH_DIVIDE_MAX = 16 };
 struct orl_trial {
     double psnr_db, ssim;              // means over the photographs, whole pictures
     const char *key;                   // the changed option; NULL: a start
-    char value[ORL_OPTION_NAME_BYTES];
+    double value;
     bool kept;                         // better than all before (orl_score_better)
 };
 

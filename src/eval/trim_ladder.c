@@ -61,13 +61,13 @@ static bool set_option(const char *assignment, struct trim_state *t)
     const struct orl_render_params before = t->render;
     char key[64];
     snprintf(key, sizeof key, "%.*s", (int)strcspn(assignment, "="), assignment);
-    const struct orl_render_option *option = orl_render_option_find(key);
+    const struct orl_option *option = orl_render_option_find(key);
     if (!option || orl_render_params_set(NULL, &t->render, assignment) != ORL_OK)
         return false;
     // Where the splats change, the photographs' depth maps are drawn anew.
     t->shares = !strstr(option->readers, "proxy=");
-    if (option->kind == ORL_OPTION_NUMBER)
-        return orl_render_option_number(option, &t->render) < orl_render_option_number(option, &before);
+    if (option->kind == ORL_VALUE_FLOAT)
+        return orl_option_number(option, &t->render) < orl_option_number(option, &before);
     return memcmp(&t->render, &before, sizeof before) != 0;
 }
 

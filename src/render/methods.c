@@ -1,16 +1,12 @@
-// All methods: one row each. What the names in a row stand for is in the tables below them.
+// All methods: one row each. What the names in a row stand for is below them.
 #include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "render/frame/method.h"
 
-#define SLOT_DEFAULT(field, type, preset, readers, help) .field = preset,
-#define FILE_DEFAULT(field, preset, readers, help) .field = preset,
-#define CHOICE_DEFAULT(field, type, names, preset, readers, help) .field = preset,
-#define NUMBER_DEFAULT(field, preset, least, most, unit, readers, tries, help) .field = preset,
 // A row says what differs from these.
-#define DEFAULTS ORL_RENDER_OPTIONS(SLOT_DEFAULT, FILE_DEFAULT, CHOICE_DEFAULT, NUMBER_DEFAULT)
+#define DEFAULTS ORL_RENDER_OPTIONS(ORL_OPTION_PRESET)
 
 // Photographs of the tiles that see a surface best, and what nothing covers from guessed depth.
 #define TILED \
@@ -65,26 +61,33 @@ const struct orl_method orl_methods[] = {
     {0},
 };
 
-// --- what the names of slots stand for ---
+// --- what the names of options stand for ---
 
-const void *orl_slot_at(const char *key, size_t index)
+static const void *const proxies[] = {&orl_proxy_splats, &orl_proxy_mesh, &orl_proxy_hull, &orl_proxy_voxels, NULL};
+static const void *const painters[] = {&orl_paint_gather, &orl_paint_tiled, &orl_paint_points, &orl_paint_billboards,
+                                       NULL};
+static const void *const selections[] = {&orl_select_all, &orl_select_nearest, &orl_select_preselect,
+                                         &orl_select_princ, NULL};
+static const void *const combinations[] = {&orl_combine_mean, &combine_top, &combine_sigma, &combine_best,
+                                           &combine_robust, NULL};
+
+static const char *file_at(const char *folder, size_t index)
 {
-    static const struct {
-        const char *key;
-        const void *all[8]; // ended by NULL
-    } slots[] = {
-        {"proxy", {&orl_proxy_splats, &orl_proxy_mesh, &orl_proxy_hull, &orl_proxy_voxels}},
-        {"paint", {&orl_paint_gather, &orl_paint_tiled, &orl_paint_points, &orl_paint_billboards}},
-        {"select", {&orl_select_all, &orl_select_nearest, &orl_select_preselect,
-                    &orl_select_princ}},
-        {"combine", {&orl_combine_mean, &combine_top, &combine_sigma, &combine_best,
-                     &combine_robust}},
-    };
-    for (size_t i = 0; i < ORL_COUNT(slots); i++)
-        if (strcmp(slots[i].key, key) == 0)
-            return index < ORL_COUNT(slots[i].all) ? slots[i].all[index] : NULL;
-    return NULL;
+    const char *file = orl_shader_file(folder, index);
+    return file ? file + strlen(folder) + 1 : NULL;
 }
+
+static const char *visibility_at(size_t index)
+{
+    return file_at("gather/visibility", index);
+}
+
+static const char *weight_at(size_t index)
+{
+    return file_at("gather/weight", index);
+}
+
+ORL_OPTION_ROWS(orl_render_options, orl_render_params, ORL_RENDER_OPTIONS)
 
 // --- methods by name ---
 

@@ -1,45 +1,11 @@
 // The parameters of a method: from text, as they suit a scene, and whether they go together.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "core/arguments.h"
 #include "core/file.h"
 #include "render/frame/method.h"
 #include "render/proxy/proxy.h"
-
-// --- names ---
-
-// Name of the `index`-th shader file of a slot, without folder and extension; false past the last.
-static bool file_at(const char *key, size_t index, char name[ORL_OPTION_NAME_BYTES])
-{
-    char folder[64];
-    snprintf(folder, sizeof folder, "gather/%s", key);
-    const char *file = orl_shader_file(folder, index);
-    if (!file)
-        return false;
-    file += strlen(folder) + 1;
-    memset(name, 0, ORL_OPTION_NAME_BYTES);
-    snprintf(name, ORL_OPTION_NAME_BYTES, "%.*s", (int)strcspn(file, "."), file);
-    return true;
-}
-
-bool orl_render_option_name(const struct orl_render_option *option, size_t index,
-                            char name[ORL_OPTION_NAME_BYTES])
-{
-    const void *found;
-    switch (option->kind) {
-    case ORL_OPTION_CHOICE:
-        return orl_option_word(option->names, index, name);
-    case ORL_OPTION_SLOT:
-        found = orl_slot_at(option->key, index);
-        snprintf(name, ORL_OPTION_NAME_BYTES, "%s", found ? orl_slot_name(found) : "");
-        return found;
-    case ORL_OPTION_FILE:
-        return file_at(option->key, index, name);
-    default:
-        return false;
-    }
-}
 
 // --- choices that go together ---
 
@@ -52,11 +18,10 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params)
 {
     const struct orl_painter *painter = params->paint;
-    char needed[ORL_OPTION_NAME_BYTES];
-    for (size_t i = 0; orl_option_word(painter->needs, i, needed); i++)
-        if (!orl_render_params_equal(params, needed))
-            return orl_fail(log, ORL_ERR_ARGUMENT, "paint=%s goes with %s alone", painter->name,
-                            needed);
+    const char *missing = orl_render_params_first(params, painter->needs, false);
+    if (missing)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "paint=%s goes with %.*s alone", painter->name,
+                        (int)strcspn(missing, " "), missing);
     if (painter == &orl_paint_points && !params->proxy->color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "paint=points: proxy=%s has no colours",
                         params->proxy->name);
@@ -72,67 +37,24 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
 
 // --- parameters from text ---
 
-static size_t field_size(const struct orl_render_option *option)
-{
-    return option->kind == ORL_OPTION_FILE     ? (size_t)ORL_OPTION_NAME_BYTES
-           : option->kind == ORL_OPTION_SLOT   ? sizeof(void *)
-           : option->kind == ORL_OPTION_NUMBER ? sizeof(float)
-                                               : sizeof(int); // enums of this struct are ints
-}
-
 static void append(char *list, size_t size, const char *word)
 {
     size_t used = strlen(list);
     snprintf(list + used, size - used, " %s", word);
 }
 
-static enum orl_result set_name(const struct orl_log *log, const struct orl_render_option *option,
-                                const char *text, void *field)
+static enum orl_result assign(const struct orl_log *log, const char *assignment, struct orl_render_params *params)
 {
-    char list[256] = "", name[ORL_OPTION_NAME_BYTES];
-    for (int i = 0; orl_render_option_name(option, (size_t)i, name); i++) {
-        append(list, sizeof list, name);
-        if (strcmp(name, text) != 0)
-            continue;
-        const void *slot = orl_slot_at(option->key, (size_t)i);
-        const void *value = option->kind == ORL_OPTION_FILE   ? (const void *)name
-                            : option->kind == ORL_OPTION_SLOT ? (const void *)&slot
-                                                              : &i;
-        memcpy(field, value, field_size(option));
-        return ORL_OK;
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "%s=%s: must be one of%s", option->key, text, list);
-}
-
-static enum orl_result set_value(const struct orl_log *log,
-                                 const struct orl_render_option *option, const char *text,
-                                 struct orl_render_params *params)
-{
-    void *field = (char *)params + option->offset;
-    if (option->kind != ORL_OPTION_NUMBER)
-        return set_name(log, option, text, field);
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value >= option->least && value <= option->most))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%s=%s: must be a number from %g to %g",
-                        option->key, text, option->least, option->most);
-    *(float *)field = (float)value;
-    return ORL_OK;
-}
-
-static enum orl_result find_key(const struct orl_log *log, const char *assignment,
-                                const struct orl_render_option **option)
-{
+    const struct orl_option *option = orl_render_option_find(assignment);
+    const char *equals = strchr(assignment, '=');
     char list[512] = "";
-    size_t length = strcspn(assignment, "=");
-    if (assignment[length] != '=')
+    if (!equals)
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: must be KEY=VALUE", assignment);
-    for (*option = orl_render_options; (*option)->key; (*option)++) {
-        if (strlen((*option)->key) == length && strncmp((*option)->key, assignment, length) == 0)
-            return ORL_OK;
-        append(list, sizeof list, (*option)->key);
-    }
-    return orl_fail(log, ORL_ERR_ARGUMENT, "option %.*s is not known; there are:%s", (int)length,
+    if (option)
+        return orl_option_set(log, option, equals + 1, params);
+    for (option = orl_render_options(); option->name; option++)
+        append(list, sizeof list, option->name);
+    return orl_fail(log, ORL_ERR_ARGUMENT, "option %.*s is not known; there are:%s", (int)(equals - assignment),
                     assignment, list);
 }
 
@@ -140,15 +62,12 @@ enum orl_result orl_render_params_assign(const struct orl_log *log,
                                          struct orl_render_params *params,
                                          const char *const *assignments, size_t count)
 {
-    const struct orl_render_option *option;
     struct orl_render_params changed = *params;
-    for (size_t i = 0; i < count; i++) {
-        ORL_TRY(find_key(log, assignments[i], &option));
-        ORL_TRY(set_value(log, option, assignments[i] + strlen(option->key) + 1, &changed));
-    }
+    for (size_t i = 0; i < count; i++)
+        ORL_TRY(assign(log, assignments[i], &changed));
     // Checked after all assignments, since a later one may choose what reads an option.
     for (size_t i = 0; i < count; i++) {
-        ORL_TRY(find_key(log, assignments[i], &option));
+        const struct orl_option *option = orl_render_option_find(assignments[i]);
         if (!orl_render_option_read(option, &changed))
             return orl_fail(log, ORL_ERR_ARGUMENT,
                             "%s: this method does not read it; it belongs to: %s", assignments[i],
@@ -202,9 +121,9 @@ bool orl_render_params_take_proxy(const struct orl_render_params *from,
     const struct orl_proxy_kind *kind = from->proxy;
     if (params->paint != &orl_paint_gather)
         return false;
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
-        if (strcmp(o->key, "proxy") == 0 || orl_proxy_reads(o, kind))
-            memcpy((char *)params + o->offset, (const char *)from + o->offset, field_size(o));
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
+        if (strcmp(o->name, "proxy") == 0 || orl_proxy_reads(o, kind))
+            memcpy((char *)params + o->offset, (const char *)from + o->offset, o->size);
     enum orl_fill own = params->fill;
     params->fill = from->fill;
     if (orl_render_params_check(NULL, params) != ORL_OK)
@@ -232,13 +151,8 @@ static const struct orl_method *tuned_method(const struct orl_scene *scene,
 // True if a method has another value for the option than the method that it is a variant of.
 static bool differs(const char *key, const struct orl_method *a, const struct orl_method *b)
 {
-    char own[ORL_OPTION_NAME_BYTES], other[ORL_OPTION_NAME_BYTES];
-    const struct orl_render_option *option = orl_render_option_find(key);
-    if (!option)
-        return false; // which setting it reports
-    orl_render_option_print(option, &a->params, own, sizeof own);
-    orl_render_option_print(option, &b->params, other, sizeof other);
-    return strcmp(own, other) != 0;
+    const struct orl_option *option = orl_render_option_find(key);
+    return option && !orl_option_equal(option, &a->params, &b->params); // else setting it reports
 }
 
 void orl_render_params_tuned(const struct orl_log *log, const struct orl_method *method,

@@ -10,21 +10,21 @@ enum { SETTINGS_MAX = 64, SETTING_BYTES_MAX = 160 };
 
 // --- what there is ---
 
-static json_t *names_json(const struct orl_render_option *option)
+static json_t *names_json(const struct orl_option *option)
 {
     json_t *names = json_array();
-    char name[ORL_OPTION_NAME_BYTES];
-    for (size_t i = 0; orl_render_option_name(option, i, name); i++)
+    char name[ORL_OPTION_TEXT];
+    for (size_t i = 0; orl_option_name(option, i, name); i++)
         json_array_append_new(names, json_string(name));
     return names;
 }
 
-static json_t *option_json(const struct orl_render_option *option)
+static json_t *option_json(const struct orl_option *option)
 {
-    json_t *json = json_pack("{s:s, s:s}", "key", option->key, "help", option->help);
-    json_t *more = option->kind == ORL_OPTION_NUMBER
-                       ? json_pack("{s:f, s:f, s:s}", "least", option->least, "most", option->most,
-                                   "unit", option->unit)
+    json_t *json = json_pack("{s:s, s:s}", "key", option->name, "help", option->help);
+    json_t *more = option->kind == ORL_VALUE_FLOAT
+                       ? json_pack("{s:f, s:f, s:s}", "least", option->low, "most", option->high,
+                                   "unit", option->meta)
                        : json_pack("{s:o}", "names", names_json(option));
     json_object_update_new(json, more);
     return json;
@@ -36,7 +36,7 @@ json_t *orl_walk_methods_json(const struct orl_choice *chosen)
     for (const struct orl_method *m = orl_methods; m->name; m++)
         json_array_append_new(list, json_pack("{s:s, s:s}", "name", m->name, "description",
                                               m->description));
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
         json_array_append_new(options, option_json(o));
     return json_pack("{s:o, s:o, s:o}", "list", list, "options", options, "chosen",
                      orl_walk_choice_json(chosen));
@@ -45,14 +45,10 @@ json_t *orl_walk_methods_json(const struct orl_choice *chosen)
 json_t *orl_walk_choice_json(const struct orl_choice *choice)
 {
     json_t *values = json_object();
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        char text[ORL_OPTION_NAME_BYTES];
-        if (!orl_render_option_read(o, &choice->params))
-            continue;
-        orl_render_option_print(o, &choice->params, text, sizeof text);
-        if (o->kind == ORL_OPTION_NUMBER) // without the digits that a float does not have
-            snprintf(text, sizeof text, "%.6g", atof(text));
-        json_object_set_new(values, o->key, json_string(text));
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
+        char text[ORL_OPTION_TEXT];
+        if (orl_render_option_read(o, &choice->params) && orl_option_print(o, &choice->params, text))
+            json_object_set_new(values, o->name, json_string(text));
     }
     return json_pack("{s:s, s:o}", "name", choice->method->name, "values", values);
 }

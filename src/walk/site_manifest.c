@@ -14,9 +14,9 @@
 static json_t *options_json(const struct orl_render_params *params)
 {
     json_t *options = json_object();
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++)
-        if (o->kind == ORL_OPTION_NUMBER)
-            json_object_set_new(options, o->key, json_real(orl_render_option_number(o, params)));
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
+        if (o->kind == ORL_VALUE_FLOAT)
+            json_object_set_new(options, o->name, json_real(orl_option_number(o, params)));
     return options;
 }
 

@@ -15,15 +15,15 @@ static void print_reader(const char *readers)
     printf("`");
 }
 
-static void print_values(const struct orl_render_option *option)
+static void print_values(const struct orl_option *option)
 {
-    char name[ORL_OPTION_NAME_BYTES];
-    if (option->kind == ORL_OPTION_NUMBER) {
-        printf("%g to %g%s%s", option->least, option->most, *option->unit ? " " : "",
-               option->unit);
+    char name[ORL_OPTION_TEXT];
+    if (option->kind == ORL_VALUE_FLOAT) {
+        printf("%g to %g%s%s", option->low, option->high, *option->meta ? " " : "",
+               option->meta);
         return;
     }
-    for (size_t i = 0; orl_render_option_name(option, i, name); i++)
+    for (size_t i = 0; orl_option_name(option, i, name); i++)
         printf("%s`%s`", i ? ", " : "", name);
 }
 
@@ -31,8 +31,8 @@ static void print_options(void)
 {
     printf("| option | values | read by | what it does | `oriel tune` tries |\n"
            "|---|---|---|---|---|\n");
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        printf("| `%s` | ", o->key);
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
+        printf("| `%s` | ", o->name);
         print_values(o);
         printf(" | ");
         print_reader(o->readers);
@@ -52,18 +52,12 @@ static void print_methods(void)
     for (const struct orl_method *m = orl_methods; m->name; m++)
         printf("---|");
     printf("\n");
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        printf("| `%s` |", o->key);
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
+        printf("| `%s` |", o->name);
         for (const struct orl_method *m = orl_methods; m->name; m++) {
-            char text[ORL_OPTION_NAME_BYTES];
-            orl_render_option_print(o, &m->params, text, sizeof text);
-            double value;
-            if (!orl_render_option_read(o, &m->params))
-                printf(" |");
-            else if (o->kind == ORL_OPTION_NUMBER && sscanf(text, "%lf", &value) == 1)
-                printf(" %g |", value); // 0.1, not the float next to it
-            else
-                printf(" %s |", text);
+            char text[ORL_OPTION_TEXT];
+            orl_option_print(o, &m->params, text);
+            printf(orl_render_option_read(o, &m->params) ? " %s |" : " |", text);
         }
         printf("\n");
     }

@@ -75,7 +75,7 @@ grep -qF "\"$photos\"" "$work/plan.json" || fail "the last job does not name the
 run 2 densify "$work/b" --part 1/3 --photos "$work/b/stereo/fusion.cfg" --sources 7
 says "not begun with these settings"
 run 2 densify "$work/b" --part 4/3
-says "not K/N"
+says "must be K/N"
 run 2 job fuse "$work/b" --part 1/3 --photographs 3
 says "6 photographs are fused in 2 clusters, not in 3"
 [ -z "$(ls "$work/b/stereo/depth_maps")" ] || fail "a part that was refused has made maps"

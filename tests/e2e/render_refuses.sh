@@ -46,7 +46,7 @@ path=(render ws --path photos --frames 5 --size 48x32 --quiet)
     "$oriel" "${path[@]}" --out parts --part 2/2 && [ "$(ls parts | head -n 1)" = 00002.png ] &&
     "$oriel" "${path[@]}" --out parts --part 1/2 && diff -r whole parts ||
     { echo "parts of a path are not the whole" >&2; failed=1; }
-refuses 2 'not K/N' "$oriel" "${path[@]}" --out out.d --part 3/2
+refuses 2 'must be K/N' "$oriel" "${path[@]}" --out out.d --part 3/2
 refuses 2 'have parts' "$oriel" "${path[@]}" --out out.mp4 --part 1/2
 refuses 2 'have parts' "$oriel" render ws --at 0001 --out out.png --part 1/2
 

@@ -12,11 +12,11 @@
 // What was set prints, and sets the same again.
 static void print_all(const struct orl_render_params *params)
 {
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
         struct orl_render_params again = *params;
-        char value[64], text[160];
-        orl_render_option_print(o, params, value, sizeof value);
-        snprintf(text, sizeof text, "%s=%s", o->key, value);
+        char value[ORL_OPTION_TEXT], text[160];
+        orl_option_print(o, params, value);
+        snprintf(text, sizeof text, "%s=%s", o->name, value);
         if (orl_render_option_read(o, params))
             fuzz_require(orl_render_params_set(&fuzz_log, &again, text) == ORL_OK,
                          "options survive their text");

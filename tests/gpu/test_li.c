@@ -428,19 +428,19 @@ static void another_proxy_stands_in(void **state)
     setup(&f, false);
     add_photo(&f, look_from(0, 0, 0, SIDE, 40), green);
     orl_render_params_tuned(NULL, li, &f.scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "splats");
+    assert_string_equal(params.proxy->name, "splats");
     struct orl_frame frame = draw(gpu, &f, look_from(0, 0, 0, SIDE, 40), &params, 0);
     assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 0.01);
     orl_frame_finish(&frame);
     f.photos[0].masked = true;
     orl_render_params_tuned(NULL, li, &f.scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "hull");
+    assert_string_equal(params.proxy->name, "hull");
     f.photos[0].test = true; // a photograph that is held out carves nothing
     orl_render_params_tuned(NULL, li, &f.scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "splats");
+    assert_string_equal(params.proxy->name, "splats");
     orl_points_finish(&f.scene.points);
     orl_render_params_tuned(NULL, li, &f.scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "mesh");
+    assert_string_equal(params.proxy->name, "mesh");
     teardown(&f);
 }
 

@@ -1,19 +1,21 @@
 // The option table: what is tried can be set, presets survive their text, what nothing reads is
 // refused, and scenes' settings are used.
+#include <stdio.h>
 #include <string.h>
 
 #include "oriel/render.h"
 #include "render/frame/method.h"
+#include "render/proxy/proxy.h"
 #include "test.h"
 
 static void tries_can_be_set(void **state)
 {
     (void)state;
     int tried = 0;
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
         tried += o->try_count > 0;
         for (int i = 0; i < o->try_count; i++) {
-            assert_true(o->tries[i] >= o->least && o->tries[i] <= o->most);
+            assert_true(o->tries[i] >= o->low && o->tries[i] <= o->high);
             assert_true(i == 0 || o->tries[i] > o->tries[i - 1]);
         }
     }
@@ -29,17 +31,14 @@ static void presets_survive_their_text(void **state)
         char text[64][96];
         const char *assignments[64];
         size_t count = 0;
-        for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-            char value[64];
-            orl_render_option_print(o, &m->params, value, sizeof value);
+        for (const struct orl_option *o = orl_render_options(); o->name; o++) {
+            char value[ORL_OPTION_TEXT];
+            orl_option_print(o, &m->params, value);
             if (!orl_render_option_read(o, &m->params)) { // a default, which text may not set
-                memcpy((char *)&params + o->offset, (const char *)&m->params + o->offset,
-                       o->kind == ORL_OPTION_FILE   ? (size_t)ORL_OPTION_NAME_BYTES
-                       : o->kind == ORL_OPTION_SLOT ? sizeof(void *)
-                                                    : sizeof(float));
+                memcpy((char *)&params + o->offset, (const char *)&m->params + o->offset, o->size);
                 continue;
             }
-            snprintf(text[count], sizeof text[count], "%s=%s", o->key, value);
+            snprintf(text[count], sizeof text[count], "%s=%s", o->name, value);
             assignments[count] = text[count];
             count++;
         }
@@ -52,13 +51,13 @@ static void presets_survive_their_text(void **state)
 static void options_that_nothing_reads_are_refused(void **state)
 {
     (void)state;
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
         size_t readers = 0;
         for (const struct orl_method *m = orl_methods; m->name; m++) {
             struct orl_render_params params = m->params;
-            char value[64], assignment[128];
-            orl_render_option_print(o, &params, value, sizeof value);
-            snprintf(assignment, sizeof assignment, "%s=%s", o->key, value);
+            char value[ORL_OPTION_TEXT], assignment[128];
+            orl_option_print(o, &params, value);
+            snprintf(assignment, sizeof assignment, "%s=%s", o->name, value);
             bool read = orl_render_option_read(o, &params);
             readers += read;
             assert_int_equal(orl_render_params_set(NULL, &params, assignment),
@@ -87,6 +86,50 @@ static void several_are_set_at_once(void **state)
     assert_string_equal(params.weight, "lumigraph");
 }
 
+static void keep(void *text, enum orl_log_level level, const char *message)
+{
+    (void)level;
+    snprintf(text, 512, "%s", message);
+}
+
+// What is refused says what is allowed.
+static void errors_tell_what_is_allowed(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *assignment, *said;
+    } wrong[] = {{"outliers=7", "outliers=7: must be a number from 0 to 1"},
+                 {"weight=heavy", "weight=heavy: must be one of airieau, equal, lumigraph, normal, princ, "
+                                  "selected, ulr"},
+                 {"proxy=splat", "proxy=splat: must be one of splats, mesh, hull, voxels"},
+                 {"fill=red", "fill=red: must be one of none, color, depth, ground, room"},
+                 {"of_tomorrow=1", "option of_tomorrow is not known; there are: proxy paint "},
+                 {"outliers", "outliers: must be KEY=VALUE"}};
+    char text[512];
+    const struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep, .priv = text};
+    for (size_t i = 0; i < ORL_COUNT(wrong); i++) {
+        struct orl_render_params params = orl_methods[0].params;
+        assert_int_equal(orl_render_params_set(&log, &params, wrong[i].assignment), ORL_ERR_ARGUMENT);
+        assert_int_equal(strncmp(text, wrong[i].said, strlen(wrong[i].said)), 0);
+    }
+}
+
+// A number prints with the digits that were given, and with as many as a float needs.
+static void numbers_print_as_they_are(void **state)
+{
+    (void)state;
+    static const char *const given[] = {"0.1", "0.3", "0.123456791"};
+    const struct orl_option *option = orl_render_option_find("outliers");
+    for (size_t i = 0; i < ORL_COUNT(given); i++) {
+        struct orl_render_params params = orl_methods[0].params;
+        char text[ORL_OPTION_TEXT], assignment[64];
+        snprintf(assignment, sizeof assignment, "outliers=%s", given[i]);
+        assert_int_equal(orl_render_params_set(NULL, &params, assignment), ORL_OK);
+        assert_true(orl_option_print(option, &params, text));
+        assert_string_equal(text, given[i]);
+    }
+}
+
 static void choices_must_go_together(void **state)
 {
     (void)state;
@@ -112,19 +155,19 @@ static void scenes_without_points_use_mesh_or_hull(void **state)
     struct orl_render_params params;
     const struct orl_method *method = orl_method_find(NULL, "orzan-view");
     orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "mesh");
+    assert_string_equal(params.proxy->name, "mesh");
     struct orl_photo photo = {.masked = true};
     scene.photos = &photo;
     scene.photo_count = 1;
     orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "hull"); // there is no mesh
+    assert_string_equal(params.proxy->name, "hull"); // there is no mesh
     scene.points.count = 1;
     orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "splats");
+    assert_string_equal(params.proxy->name, "splats");
     scene.points.count = 0;
     method = orl_method_find(NULL, "points");
     orl_render_params_tuned(NULL, method, &scene, &params);
-    assert_string_equal(orl_slot_name(params.proxy), "splats");
+    assert_string_equal(params.proxy->name, "splats");
 }
 
 // A variant takes what was found for its base, but not in what makes it a variant, and not if
@@ -202,6 +245,8 @@ int main(void)
         cmocka_unit_test(presets_survive_their_text),
         cmocka_unit_test(options_that_nothing_reads_are_refused),
         cmocka_unit_test(several_are_set_at_once),
+        cmocka_unit_test(errors_tell_what_is_allowed),
+        cmocka_unit_test(numbers_print_as_they_are),
         cmocka_unit_test(choices_must_go_together),
         cmocka_unit_test(scenes_without_points_use_mesh_or_hull),
         cmocka_unit_test(scenes_settings_are_used),

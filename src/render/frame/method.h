@@ -43,14 +43,9 @@ extern const struct orl_painter orl_paint_gather, orl_paint_tiled, orl_paint_poi
 // Photographs of orl_select_princ beside those by direction, for surfaces that these see too obliquely.
 enum { ORL_PRINC_EXTRAS = 3 };
 
-// The `index`-th implementation of the slot `key` (methods.c); NULL past the last, or if it is not a
-// slot.
-const void *orl_slot_at(const char *key, size_t index);
-// The name of such an implementation, its first member.
-const char *orl_slot_name(const void *slot);
-// The `index`-th word of a list that is separated by spaces; false past the last.
-bool orl_option_word(const char *list, size_t index, char word[ORL_OPTION_NAME_BYTES]);
-// True if "key=name" holds for `sample` or for an option that is read.
+// True if "key=name", which a space may end, holds for `sample` or for an option that is read.
 bool orl_render_params_equal(const struct orl_render_params *params, const char *condition);
+// The first of these conditions that is true, or else false; NULL: there is none.
+const char *orl_render_params_first(const struct orl_render_params *params, const char *conditions, bool truth);
 
 #endif

@@ -16,15 +16,19 @@ _Static_assert((int)ORL_SAMPLING_BICUBIC == ORL_BICUBIC, "shaders name it too");
 
 // --- parameters of the shaders ---
 
+static bool is_uniform(const struct orl_option *option)
+{
+    return option->kind == ORL_VALUE_FLOAT || option->kind == ORL_VALUE_CHOICE;
+}
+
 // The define RENDER_OPTIONS: declarations of the options, in the order of struct render_options.
 static char *declare_options(const struct orl_log *log)
 {
     char *text = orl_strdup(log, "RENDER_OPTIONS");
-    for (const struct orl_render_option *o = orl_render_options; text && o->key; o++) {
-        if (o->kind == ORL_OPTION_SLOT || o->kind == ORL_OPTION_FILE)
+    for (const struct orl_option *o = orl_render_options(); text && o->name; o++) {
+        if (!is_uniform(o))
             continue;
-        char *longer = orl_format(log, "%s %s %s;", text,
-                                  o->kind == ORL_OPTION_NUMBER ? "float" : "int", o->key);
+        char *longer = orl_format(log, "%s %s %s;", text, o->kind == ORL_VALUE_FLOAT ? "float" : "int", o->name);
         free(text);
         text = longer;
     }
@@ -111,14 +115,10 @@ static void describe_photo(const struct frame *frame, size_t index, struct photo
 
 static void copy_options(const struct orl_render_params *params, struct render_options *opt)
 {
-#define NO_COPY(...)
-#define COPY_CHOICE(field, type, names, preset, readers, help) opt->field = (int)params->field;
-#define COPY_NUMBER(field, preset, least, most, unit, readers, tries, help) \
-    opt->field = params->field;
-    ORL_RENDER_OPTIONS(NO_COPY, NO_COPY, COPY_CHOICE, COPY_NUMBER)
-#undef NO_COPY
-#undef COPY_CHOICE
-#undef COPY_NUMBER
+    char *next = (char *)opt;
+    for (const struct orl_option *o = orl_render_options(); o->name; o++)
+        if (is_uniform(o))
+            next = mempcpy(next, (const char *)params + o->offset, o->size);
 }
 
 int orl_tile_side(const struct frame *frame)

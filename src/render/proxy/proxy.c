@@ -151,7 +151,7 @@ enum orl_result orl_proxy_color(const struct frame *frame, const struct paint_in
     return ORL_OK;
 }
 
-bool orl_proxy_reads(const struct orl_render_option *option, const struct orl_proxy_kind *kind)
+bool orl_proxy_reads(const struct orl_option *option, const struct orl_proxy_kind *kind)
 {
     size_t length = strlen(kind->name);
     for (const char *at = option->readers; (at = strstr(at, "proxy=")); at++)
@@ -164,11 +164,11 @@ uint64_t orl_proxy_key(const struct proxy *proxy, const struct orl_render_params
 {
     uint64_t key = XXH3_64bits_withSeed(proxy->kind->name, strlen(proxy->kind->name),
                                         proxy->version);
-    for (const struct orl_render_option *o = orl_render_options; o->key; o++) {
-        char text[ORL_OPTION_NAME_BYTES];
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
+        char text[ORL_OPTION_TEXT];
         if (!orl_proxy_reads(o, proxy->kind))
             continue;
-        orl_render_option_print(o, params, text, sizeof text);
+        orl_option_print(o, params, text);
         key = XXH3_64bits_withSeed(text, strlen(text), key);
     }
     return key;

@@ -81,7 +81,7 @@ struct proxy {
 };
 
 // True if this option belongs to proxies of the kind.
-bool orl_proxy_reads(const struct orl_render_option *option, const struct orl_proxy_kind *kind);
+bool orl_proxy_reads(const struct orl_option *option, const struct orl_proxy_kind *kind);
 enum orl_result orl_proxy_create(struct orl_gpu *gpu, const struct orl_scene *scene,
                                  const struct orl_proxy_kind *kind, size_t max_bytes,
                                  struct proxy *proxy);
