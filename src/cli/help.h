@@ -20,5 +20,8 @@ void page_bash(FILE *out);
 void page_zsh(FILE *out);
 void page_fish(FILE *out);
 void page_markdown(FILE *out);
+// Prints what the last of the words after "oriel" can become: a line each, its meaning after a tab. Nothing: a
+// file, or what nobody knows.
+void help_complete(size_t count, const char *const *words);
 
 #endif

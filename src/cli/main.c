@@ -8,6 +8,10 @@
 static int run_command(int argc, const char *const *argv, bool jobs)
 {
     const char *name = argc > 0 ? argv[0] : "";
+    if (!jobs && argc > 1 && strcmp(name, "help") == 0 && strcmp(argv[1], "--complete") == 0) {
+        help_complete((size_t)argc - 2, argv + 2); // words of a line that is half typed are no arguments
+        return 0;
+    }
     const struct command *command = command_find(name, jobs);
     if (command)
         return command_main(command, argc - 1, argv + 1);

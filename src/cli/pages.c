@@ -6,15 +6,6 @@
 
 // --- what all pages need ---
 
-// Options of the command, and then those of every command, which end with a NULL name.
-static const struct orl_option *option_at(const struct command *command, size_t index)
-{
-    const struct orl_option *row = command->rows();
-    for (; row->name && index; row++)
-        index--;
-    return row->name ? row : &common_option_rows()[index];
-}
-
 // Writes text with a backslash before each of the characters in `special`.
 static void print_escaped(FILE *out, const char *text, const char *special)
 {
@@ -25,49 +16,6 @@ static void print_escaped(FILE *out, const char *text, const char *special)
 static const char *job_word(const struct command *command)
 {
     return command->hidden ? "job " : "";
-}
-
-// The `index`-th word that an option's value can be; false past the last, or where it is not one of
-// a few.
-static bool value_at(const struct orl_option *row, size_t index, char name[ORL_OPTION_TEXT])
-{
-    if (row->kind == ORL_VALUE_CHOICE)
-        return orl_option_name(row, index, name);
-    for (size_t i = 0; i <= index && strcmp(row->name, "method") == 0; i++) {
-        if (!orl_methods[i].name)
-            return false;
-        snprintf(name, ORL_OPTION_TEXT, "%s", orl_methods[i].name);
-    }
-    return strcmp(row->name, "method") == 0;
-}
-
-static void print_values(FILE *out, const struct orl_option *row)
-{
-    char name[ORL_OPTION_TEXT];
-    for (size_t i = 0; value_at(row, i, name); i++)
-        fprintf(out, "%s%s", i ? " " : "", name);
-}
-
-static bool has_values(const struct orl_option *row)
-{
-    char name[ORL_OPTION_TEXT];
-    return value_at(row, 0, name);
-}
-
-static bool is_file(const struct orl_option *row)
-{
-    static const char *const words[] = {"FILE", "DIR", "SCENE", "SITE"};
-    for (size_t i = 0; i < ORL_COUNT(words); i++)
-        if (strstr(row->meta, words[i]))
-            return true;
-    return false;
-}
-
-static void print_commands(FILE *out, bool hidden)
-{
-    for (size_t i = 0; commands[i]; i++)
-        if (commands[i]->hidden == hidden)
-            fprintf(out, "%s ", commands[i]->name);
 }
 
 // --- the man page ---
@@ -138,108 +86,81 @@ void page_man(FILE *out)
                  "PATH.\n.SH SEE ALSO\n.BR colmap (1),\nthe guide in the package's documentation\n");
 }
 
-// --- completions ---
+// --- completions: shells ask the program for each word ---
 
 void page_bash(FILE *out)
 {
     fprintf(out, "# Completion of oriel for bash.\n_oriel()\n{\n"
-                 "    local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]}\n"
-                 "    local command=${COMP_WORDS[1]} first=1 words=\n"
-                 "    [ \"$command\" != job ] || { command=\"job ${COMP_WORDS[2]}\"; first=2; }\n"
-                 "    if [ \"$COMP_CWORD\" -le \"$first\" ]; then\n"
-                 "        words='");
-    print_commands(out, false);
-    fprintf(out, "job version'\n        [ \"$first\" -eq 1 ] || words='");
-    print_commands(out, true);
-    fprintf(out, "'\n        mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$cur\")\n        return\n    fi\n"
-                 "    case \"$command $prev\" in\n");
-    for (size_t i = 0; commands[i]; i++)
-        for (const struct orl_option *row = commands[i]->rows(); row->name; row++)
-            if (has_values(row)) {
-                fprintf(out, "    '%s%s --%s') words='", job_word(commands[i]), commands[i]->name,
-                        row->name);
-                print_values(out, row);
-                fprintf(out, "' ;;\n");
-            }
-    fprintf(out, "    'help '*) words='");
-    print_commands(out, false);
-    fprintf(out, "' ;;\n    esac\n    if [ -z \"$words\" ] && [[ $cur == -* ]]; then\n"
-                 "        case $command in\n");
-    for (size_t i = 0; commands[i]; i++) {
-        fprintf(out, "        '%s%s') words='", job_word(commands[i]), commands[i]->name);
-        for (size_t k = 0; option_at(commands[i], k)->name; k++)
-            fprintf(out, "--%s ", option_at(commands[i], k)->name);
-        fprintf(out, "' ;;\n");
-    }
-    fprintf(out, "        esac\n    fi\n    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$cur\")\n}\n"
-                 "complete -o default -F _oriel oriel\n");
-}
-
-static void print_zsh_option(FILE *out, const struct orl_option *row)
-{
-    fprintf(out, " \\\n            '%s--%s[", row->kind == ORL_VALUE_LIST ? "*" : "", row->name);
-    for (const char *c = row->help; *c; c++) // a quote ends the word that it stands in
-        fprintf(out, *c == '\'' ? "'\\''" : strchr("[]:\\", *c) ? "\\%c" : "%c", *c);
-    fprintf(out, "]");
-    if (row->kind != ORL_VALUE_FLAG) {
-        fprintf(out, ":");
-        print_escaped(out, row->meta, ":[]");
-        fprintf(out, has_values(row) ? ":(" : ":");
-        print_values(out, row);
-        fprintf(out, has_values(row) ? ")" : is_file(row) ? "_files" : " ");
-    }
-    fprintf(out, "'");
+                 "    mapfile -t COMPREPLY < <(\"$1\" help --complete \"${COMP_WORDS[@]:1:COMP_CWORD}\" | cut -f 1)\n"
+                 "}\ncomplete -o default -F _oriel oriel\n");
 }
 
 void page_zsh(FILE *out)
 {
-    fprintf(out, "#compdef oriel\n# Completion of oriel for zsh.\n_oriel()\n{\n"
-                 "    local command=$words[2]\n"
-                 "    if (( CURRENT == 2 )); then\n        compadd -- ");
-    print_commands(out, false);
-    fprintf(out, "job version\n        return\n    fi\n"
-                 "    if [[ $command == job ]]; then\n"
-                 "        if (( CURRENT == 3 )); then\n            compadd -- ");
-    print_commands(out, true);
-    fprintf(out, "\n            return\n        fi\n        command=\"job $words[3]\"\n"
-                 "        shift words\n        (( CURRENT-- ))\n    fi\n"
-                 "    shift words\n    (( CURRENT-- ))\n    case $command in\n");
-    for (size_t i = 0; commands[i]; i++) {
-        fprintf(out, "    '%s%s')\n        _arguments", job_word(commands[i]), commands[i]->name);
-        for (size_t k = 0; option_at(commands[i], k)->name; k++)
-            print_zsh_option(out, option_at(commands[i], k));
-        fprintf(out, " \\\n            '*:file:_files'\n        ;;\n");
-    }
-    fprintf(out, "    esac\n}\n_oriel \"$@\"\n");
+    // A colon parts a word from its meaning.
+    fprintf(out, "#compdef oriel\n# Completion of oriel for zsh.\nlocal -a found\n"
+                 "found=(${(f)\"$($words[1] help --complete \"${(@)words[2,CURRENT]}\")\"})\n"
+                 "found=(\"${(@)found//:/\\\\:}\")\nfound=(\"${(@)found/$'\\t'/:}\")\n"
+                 "if (( $#found )); then\n    _describe oriel found\nelse\n    _files\nfi\n");
 }
 
 void page_fish(FILE *out)
 {
-    static const char *const first = "__fish_use_subcommand";
-    fprintf(out, "# Completion of oriel for fish.\n");
-    for (size_t i = 0; commands[i]; i++) {
-        const struct command *command = commands[i];
-        char seen[64];
-        snprintf(seen, sizeof seen, "__fish_seen_subcommand_from %s", command->name);
-        fprintf(out, "complete -c oriel -n '%s' -fa %s -d '",
-                command->hidden ? "__fish_seen_subcommand_from job" : first, command->name);
-        print_escaped(out, command->brief, "'\\");
-        fprintf(out, "'\n");
-        for (size_t k = 0; option_at(command, k)->name; k++) {
-            const struct orl_option *row = option_at(command, k);
-            fprintf(out, "complete -c oriel -n '%s' -l %s%s", seen, row->name,
-                    row->kind == ORL_VALUE_FLAG ? "" : is_file(row) ? " -r" : " -x");
-            if (has_values(row)) {
-                fprintf(out, " -a '");
-                print_values(out, row);
-                fprintf(out, "'");
-            }
-            fprintf(out, " -d '");
-            print_escaped(out, row->help, "'\\");
-            fprintf(out, "'\n");
-        }
-    }
-    fprintf(out, "complete -c oriel -n '%s' -fa 'job version'\n", first);
+    fprintf(out, "# Completion of oriel for fish.\nfunction __oriel_complete\n"
+                 "    set -l words (commandline -opc)\n    set -l begun (commandline -ct)\n"
+                 "    $words[1] help --complete $words[2..] \"$begun\"\nend\n"
+                 "complete -c oriel -n 'count (__oriel_complete) >/dev/null' -fa '(__oriel_complete)'\n");
+}
+
+// A line for the word, with its meaning after a tab, if it begins as typed.
+static void offer(const char *begun, const char *prefix, const char *name, const char *meaning)
+{
+    char word[64];
+    snprintf(word, sizeof word, "%s%s", prefix, name);
+    if (strncmp(word, begun, strlen(begun)) == 0)
+        printf("%s\t%s\n", word, meaning);
+}
+
+static void offer_commands(const char *begun, bool hidden)
+{
+    for (size_t i = 0; commands[i]; i++)
+        if (commands[i]->hidden == hidden)
+            offer(begun, "", commands[i]->name, commands[i]->brief);
+    if (!hidden)
+        offer(begun, "", "job", "what the jobs of plan call");
+}
+
+static void offer_values(const char *begun, const struct orl_option *row)
+{
+    char name[ORL_OPTION_TEXT];
+    for (size_t i = 0; row->kind == ORL_VALUE_CHOICE && orl_option_name(row, i, name); i++)
+        offer(begun, "", name, "");
+    for (const struct orl_method *m = orl_methods; strcmp(row->name, "method") == 0 && m->name; m++)
+        offer(begun, "", m->name, m->description);
+}
+
+void help_complete(size_t count, const char *const *words)
+{
+    bool job = count > 1 && strcmp(words[0], "job") == 0;
+    words += job;
+    count -= job;
+    const char *begun = count ? words[count - 1] : "", *before = count > 1 ? words[count - 2] : "";
+    const struct command *command = count > 1 ? command_find(words[0], job) : NULL;
+    if (count < 2)
+        offer_commands(begun, job);
+    if (count < 2 && !job)
+        offer(begun, "", "version", "print the version");
+    if (!command)
+        return;
+    const struct orl_option *const sets[] = {command->rows(), common_option_rows()};
+    for (size_t i = 0; i < ORL_COUNT(sets); i++)
+        for (const struct orl_option *row = sets[i]; row->name; row++)
+            if (strncmp(before, "--", 2) == 0 && strcmp(before + 2, row->name) == 0)
+                offer_values(begun, row);
+            else if (*begun == '-')
+                offer(begun, "--", row->name, row->help);
+    if (command == &command_help && *begun != '-' && *before != '-')
+        offer_commands(begun, false);
 }
 
 // --- the reference ---

@@ -32,19 +32,34 @@ runs 2 "$oriel" job render
 
 # Every option is in every form.
 options=$("$oriel" render --help | grep -oE '^  --[a-z-]+')
-for form in man bash zsh fish markdown; do
+for form in man markdown; do
     runs 0 "$oriel" help --as "$form"
     sed 's/\\-/-/g' stdout.txt >"$form"
     for option in $options; do
-        grep -qE -- "$option|-l ${option#--}( |\$)" "$form" || fail "$form has no $option"
+        grep -q -- "$option" "$form" || fail "$form has no $option"
     done
 done
-# What shells complete.
+# What shells complete: they ask the program.
+for form in bash zsh fish; do
+    runs 0 "$oriel" help --as "$form"
+    cp stdout.txt "$form"
+done
+runs 0 "$oriel" help --complete render --
+for option in $options; do
+    grep -q -- "^$option	." stdout.txt || fail "$option is not completed"
+done
+runs 0 "$oriel" help --complete render --textures ""
+[ "$(cut -f 1 stdout.txt)" = "$(printf 'auto\nfull\nycc\nbc1')" ] || fail "the values of --textures are others"
+for line in "nonsense --" "render pho" "render --out x" "job nonsense --"; do
+    # shellcheck disable=SC2086
+    runs 0 "$oriel" help --complete $line
+    [ ! -s stdout.txt ] || fail "there is something for $line"
+done
 completes() { # WORD.. of the line : expected words
     line=()
     while [ "$1" != : ]; do line+=("$1"); shift; done
     shift
-    got=$(bash -c '. ./bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _oriel
+    got=$(PATH=$(dirname "$oriel"):$PATH bash -c '. ./bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _oriel "$1"
                    echo "${COMPREPLY[*]}"' - "${line[@]}")
     [ "$got" = "$*" ] || fail "${line[*]}: completes to \"$got\", not \"$*\""
 }
@@ -54,6 +69,8 @@ completes oriel render --textures b : bc1
 completes oriel eval --method orzan-v : orzan-view
 completes oriel job fuse --ph : --photographs
 completes oriel help tri : trim
+completes oriel help --as z : zsh
+completes oriel version-of-tomorrow :
 completes oriel render : render
 ! command -v zsh >/dev/null || zsh -n zsh || fail "zsh refuses its completions"
 ! command -v fish >/dev/null || fish -n fish || fail "fish refuses its completions"
