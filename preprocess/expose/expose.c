@@ -451,13 +451,14 @@ static enum orl_result guess_held_out(struct exposing *e)
             result = meter_photo(e, &e->photos[i], e->photos[i].gain, &views[i].light);
     }
     if (result == ORL_OK) {
+        static const char *const guesses[] = {ORL_GAIN_GUESSES(ORL_ENUM_NAME)};
         enum orl_gain_guess guess = orl_gains_guess(views, e->train, views + e->train,
                                                     e->count - e->train, shared, own, metering);
         for (size_t i = e->train; i < e->count; i++) {
             memcpy(e->photos[i].gain, views[i].gain, sizeof views[i].gain);
             memcpy(e->photos[i].metering, metering, sizeof metering);
         }
-        json_object_set_new(e->record, "held_out_gain", json_string(orl_gain_guess_name(guess)));
+        json_object_set_new(e->record, "held_out_gain", json_string(guesses[guess]));
     }
     free(views);
     free(shared);

@@ -18,14 +18,6 @@ struct known {
     const uint32_t *shared, *own;
 };
 
-const char *orl_gain_guess_name(enum orl_gain_guess guess)
-{
-    static const char *const names[] = {
-        "reference", "neighbours", "exposure", "exposure and neighbours", "metering",
-        "metering and neighbours"};
-    return names[guess];
-}
-
 static bool is_metered(enum orl_gain_guess guess)
 {
     return guess == ORL_GUESS_METER || guess == ORL_GUESS_METER_NEAR;

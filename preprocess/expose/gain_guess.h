@@ -2,7 +2,7 @@
 #ifndef ORL_PREPROCESS_GAIN_GUESS_H
 #define ORL_PREPROCESS_GAIN_GUESS_H
 
-#include "oriel/common.h"
+#include "oriel/option_row.h"
 
 // A photograph whose gain is known or wanted.
 struct orl_gain_view {
@@ -13,15 +13,14 @@ struct orl_gain_view {
     double light;  // of the aligned views: metered light at the scene's exposure, log2
 };
 
-enum orl_gain_guess {
-    ORL_GUESS_REFERENCE,  // 1: the scene's reference exposure
-    ORL_GUESS_NEIGHBOURS, // the gain of nearby photographs that share content
-    ORL_GUESS_EXPOSURE,   // the exposure in EXIF or in a list
-    ORL_GUESS_BOTH,       // the exposure, corrected by the neighbours' deviation from theirs
-    ORL_GUESS_METER,      // what automatic exposure makes of the light in the picture
-    ORL_GUESS_METER_NEAR, // the same, corrected by the neighbours' deviation from theirs
-};
-const char *orl_gain_guess_name(enum orl_gain_guess guess);
+// REFERENCE: 1, the scene's reference exposure. NEIGHBOURS: the gain of nearby photographs that share content.
+// EXPOSURE: as in EXIF or in a list. METER: what automatic exposure makes of the light in the picture. BOTH and
+// METER_NEAR: the two before, corrected by the neighbours' deviation from theirs.
+#define ORL_GAIN_GUESSES(NAME) \
+    NAME(ORL_GUESS_REFERENCE, "reference") NAME(ORL_GUESS_NEIGHBOURS, "neighbours") \
+    NAME(ORL_GUESS_EXPOSURE, "exposure") NAME(ORL_GUESS_BOTH, "exposure and neighbours") \
+    NAME(ORL_GUESS_METER, "metering") NAME(ORL_GUESS_METER_NEAR, "metering and neighbours")
+enum orl_gain_guess { ORL_GAIN_GUESSES(ORL_ENUMERATOR) };
 
 // Estimates gains of held-out views without using their pixels. It uses the guess with the least
 // error when each aligned photograph's gain is estimated from the others. shared[i * aligned_count
