@@ -66,17 +66,12 @@ static enum orl_result median(const struct frame *frame)
     return ORL_OK;
 }
 
-static bool shows_soft(const struct frame *frame)
-{
-    return frame->soft != NULL;
-}
-
 const struct post_pass orl_post_passes[] = {
     {"fill", fills, orl_fill_color},
     {"soften", softens, orl_fill_guesses},
     {"compose", NULL, compose},
     {"median", takes_median, median},
-    {"soft splats", shows_soft, orl_soft_layer_mix},
+    {"soft splats", orl_soft_layer_shows, orl_soft_layer_mix},
     {"specks", orl_edges_find_specks, orl_edges_remove_specks},
     {"antialias", antialiases, orl_edges_antialias},
     {0},

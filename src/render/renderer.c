@@ -25,10 +25,10 @@ struct orl_renderer {
     struct paint paint;
     struct room room;
     struct orl_tex *picture;  // of struct frame
-    struct orl_tex *mean;     // reconstructions.h; NULL: a frame is one picture
+    struct orl_tex *mean;     // reconstructions.c; NULL: a frame is one picture
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
-    struct orl_image staging; // for read_back.h
+    struct orl_image staging; // for read_back.c
     size_t point_bytes;       // of device memory for points that come as they are needed; 0: any
     int expected;             // time step after the next frame's; -1: none is expected
     struct prefetch *prefetch;      // what is prepared for it; NULL: nothing
@@ -267,7 +267,7 @@ static enum orl_result render(struct orl_renderer *r, const struct orl_view *vie
     ORL_TRY(find_proxy(r, params->proxy, &proxy));
     struct frame frame = start_frame(r, proxy, view, params, skip);
     frame.progressive = progressive;
-    frame.soft = orl_soft_layer_shows(&frame) ? &r->paint.soft : NULL;
+    r->paint.soft.shows = params->soft > 0 && frame.finishes;
     enum orl_result result = ready_frame(r, &frame);
     if (result == ORL_OK && r->expected >= 0 && r->expected != r->scene->frame)
         result = orl_prefetch_create(&frame, r->expected, &next);

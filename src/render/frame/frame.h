@@ -7,7 +7,6 @@
 struct proxy;
 struct photos;
 struct paint;
-struct soft_layer;
 
 // The result of a proxy, which is all that later passes see of it.
 struct surface {
@@ -32,7 +31,6 @@ struct frame {
     struct surface surface;    // surface that the view sees
     struct photos *photos;     // photographs on the device
     struct paint *paint;       // what the passes that make colours keep, paint/paint.h
-    struct soft_layer *soft;   // NULL: the picture shows no soft splats
     // Indices of the photographs that this frame asks, ascending; memory of the renderer.
     size_t *chosen;
     float (*selected)[4];      // by the selection: weight of each; x y z its own use

@@ -9,9 +9,8 @@ struct frame;
 // A rule that selects the photographs that a frame asks.
 struct orl_selection {
     const char *name;
-    // Writes their indices in ascending order to frame->chosen, at most `most` of them. `all`
-    // ignores `most`.
-    enum orl_result (*choose)(struct frame *frame, size_t most);
+    // Writes their indices in ascending order to frame->chosen. They may be more than fit on the device.
+    enum orl_result (*choose)(struct frame *frame);
 };
 
 // How the samples of a pixel become one colour (shaders/gather/combine), and how this streams when

@@ -335,7 +335,7 @@ static enum orl_result paint_gather(struct frame *frame)
 {
     int sweeps = frame->radiance ? 1 : frame->params->combine->sweeps;
     orl_gather_clear(frame);
-    ORL_TRY(frame->params->select->choose(frame, (size_t)frame->photos->slot_count));
+    ORL_TRY(frame->params->select->choose(frame));
     if (frame->progressive)
         ORL_TRY(orl_progressive_admit(frame, reads_depth(frame)));
     for (int sweep = 0; sweep < sweeps; sweep++)

@@ -9,14 +9,14 @@
 
 bool orl_soft_layer_shows(const struct frame *frame)
 {
-    return frame->params->soft > 0 && frame->finishes;
+    return frame->paint->soft.shows;
 }
 
 static enum orl_result load(const struct frame *frame)
 {
     struct orl_soft_model model = {0};
     enum orl_result result = orl_soft_read_scene(orl_gpu_log(frame->gpu), frame->scene->dir, &model);
-    ORL_THEN(result, orl_soft_raster_init(frame->gpu, &model, &frame->soft->raster));
+    ORL_THEN(result, orl_soft_raster_init(frame->gpu, &model, &frame->paint->soft.raster));
     orl_soft_finish(&model);
     return result;
 }
@@ -65,7 +65,7 @@ static enum orl_result keep(const struct frame *frame, size_t photo)
     params.tag = "soft splats in photographs";
     if (!photos->soft)
         ORL_TRY(orl_tex_create(frame->gpu, &params, &photos->soft));
-    ORL_TRY(orl_soft_layer_keep(frame->gpu, &frame->soft->raster, &view, photos->soft, state->slot));
+    ORL_TRY(orl_soft_layer_keep(frame->gpu, &frame->paint->soft.raster, &view, photos->soft, state->slot));
     orl_tex_make_mipmaps(photos->soft, state->slot);
     state->has_soft = true;
     return ORL_OK;
@@ -74,7 +74,7 @@ static enum orl_result keep(const struct frame *frame, size_t photo)
 // Makes the textures of the view's size.
 static enum orl_result resize(const struct frame *frame)
 {
-    struct soft_layer *layer = frame->soft;
+    struct soft_layer *layer = &frame->paint->soft;
     const struct orl_camera *c = &frame->view->camera;
     const struct orl_tex_params params = {.width = c->width, .height = c->height,
                                           .levels = orl_mip_levels(c->width, c->height), .format = GL_R16F,
@@ -86,7 +86,7 @@ static enum orl_result resize(const struct frame *frame)
 enum orl_result orl_soft_layer_ready(struct frame *frame)
 {
     size_t made = 0, left = 0;
-    if (!frame->soft->raster.splats)
+    if (!frame->paint->soft.raster.splats)
         ORL_TRY(load(frame));
     ORL_TRY(resize(frame));
     for (size_t i = 0; i < frame->chosen_count; i++) {
@@ -102,7 +102,7 @@ enum orl_result orl_soft_layer_ready(struct frame *frame)
     if (left > 0 || frame->chosen_count == 0) {
         if (frame->progressive)
             frame->progressive->missing += left;
-        frame->soft = NULL;
+        frame->paint->soft.shows = false;
     }
     return ORL_OK;
 }
@@ -127,7 +127,7 @@ static void dispatch(const struct frame *frame, struct orl_dispatch d)
 
 enum orl_result orl_soft_layer_mix(const struct frame *frame)
 {
-    struct soft_layer *layer = frame->soft;
+    struct soft_layer *layer = &frame->paint->soft;
     struct soft_block block;
     ORL_TRY(draw(frame->gpu, &layer->raster, frame->view, coarse_pixels_of_view(frame), &block));
     block.correct_share = frame->params->soft;

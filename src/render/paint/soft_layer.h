@@ -9,6 +9,7 @@
 
 // Zero-initialised, it holds nothing: the splats are read with the first frame that shows them.
 struct soft_layer {
+    bool shows; // the frame's picture shows them
     struct orl_soft_raster raster;
     // Owned, of the view's size, R16F: the luma of splats in photographs, blended, < 0: none; mipmapped, how far that
     // in the view differs.
@@ -18,7 +19,7 @@ struct soft_layer {
 // True if the frame's picture shows soft splats.
 bool orl_soft_layer_shows(const struct frame *frame);
 // Makes the layer of a frame whose photographs are chosen ready, with the splats as each of them shows them. In a
-// progressive frame it is one photograph, and while others lack it, frame->soft becomes NULL.
+// progressive frame it is one photograph, and while others lack it, the frame no longer shows the splats.
 // ORL_ERR_NOT_FOUND: the scene has none (oriel refine).
 enum orl_result orl_soft_layer_ready(struct frame *frame) ORL_CHECK_RESULT;
 // Corrects the frame's picture.

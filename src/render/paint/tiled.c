@@ -23,16 +23,16 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     // The number of photographs is part of the program, so that none is sampled in vain.
     bool specks = orl_edges_find_specks(frame);
     snprintf(defines, sizeof defines, "%s%s%sKEPT %d", rest_define(frame), specks ? "SPECKS 1\n" : "",
-             frame->soft ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
+             orl_soft_layer_shows(frame) ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
     d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
     d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
     d.images[3] = (struct orl_image_binding){frame->paint->fill.guesses, 0, GL_WRITE_ONLY};
     if (specks)
         d.images[5] = (struct orl_image_binding){frame->paint->edges.painted, 0, GL_WRITE_ONLY};
-    if (frame->soft) {
+    if (orl_soft_layer_shows(frame)) {
         d.textures[ORL_PHOTO_SOFT] = frame->photos->soft;
-        d.images[4] = (struct orl_image_binding){frame->soft->gathered, 0, GL_WRITE_ONLY};
+        d.images[4] = (struct orl_image_binding){frame->paint->soft.gathered, 0, GL_WRITE_ONLY};
     }
     d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
     // One invocation handles 2x2 pixels.
@@ -77,12 +77,12 @@ static enum orl_result paint(struct frame *frame)
     if (frame->radiance)
         return orl_paint_gather.paint(frame);
     // Depth is always needed: the selection per tile tests occlusion even if the pixels do not.
-    ORL_TRY(frame->params->select->choose(frame, (size_t)frame->photos->slot_count));
+    ORL_TRY(frame->params->select->choose(frame));
     if (frame->progressive)
         ORL_TRY(orl_progressive_admit(frame, true));
     for (size_t i = 0; !frame->progressive && i < frame->chosen_count; i++)
         ORL_TRY(orl_photos_require(frame, frame->chosen[i], true));
-    if (frame->soft)
+    if (orl_soft_layer_shows(frame))
         ORL_TRY(orl_soft_layer_ready(frame));
     ORL_TRY(paint_chosen(frame));
     return orl_gather_underpaint(frame);

@@ -184,7 +184,7 @@ static enum orl_result paint(struct frame *frame)
     struct orl_ranked *ranked = orl_array(log, frame->scene->photo_count, sizeof *ranked);
     struct billboard *all = orl_array(log, state->voxels.count, sizeof *all);
     orl_gather_clear(frame);
-    enum orl_result result = ranked && all ? orl_select_all.choose(frame, 0) : ORL_ERR_MEMORY;
+    enum orl_result result = ranked && all ? orl_select_all.choose(frame) : ORL_ERR_MEMORY;
     if (result == ORL_OK) {
         orl_rank_by_axis(frame->scene, frame->view, frame->chosen, frame->chosen_count, ranked);
         result = require(frame, ranked);

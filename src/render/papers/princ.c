@@ -271,9 +271,8 @@ static void weigh(struct frame *frame, const double direction[3], size_t nearest
     }
 }
 
-static enum orl_result choose(struct frame *frame, size_t most)
+static enum orl_result choose(struct frame *frame)
 {
-    (void)most; // more than are on the device at once are asked in batches
     enum orl_result result = frame->proxy->aspects ? ORL_OK : find_aspects(frame);
     bool *taken = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count, sizeof *taken);
     double direction[3];

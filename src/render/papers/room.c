@@ -107,7 +107,7 @@ enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *a
         snprintf(params.visibility, sizeof params.visibility, "none");
     *absent = 0;
     orl_tex_clear(room->picture);
-    enum orl_result result = orl_select_all.choose(&walls, 0);
+    enum orl_result result = orl_select_all.choose(&walls);
     if (result == ORL_OK && frame->progressive)
         result = keep_present(&walls, backgrounds, absent);
     size_t batch = (size_t)frame->photos->slot_count;

@@ -15,9 +15,8 @@ bool orl_frame_may_use(const struct frame *frame, size_t photo)
     return frame->photos->states[photo].usable && !(frame->skip && frame->skip[photo]);
 }
 
-static enum orl_result choose_all(struct frame *frame, size_t most)
+static enum orl_result choose_all(struct frame *frame)
 {
-    (void)most; // photographs that do not fit on the device are asked in batches
     frame->chosen_count = 0;
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
         if (!orl_frame_may_use(frame, i))
@@ -51,9 +50,8 @@ static double deviation(const struct frame *frame, size_t photo)
 
 // Each photograph has weight 1 - p / p', where p' is the penalty of the first one left out, so that
 // it has faded out when another replaces it. All have weight 1 if none is left out.
-static enum orl_result choose_nearest(struct frame *frame, size_t most)
+static enum orl_result choose_nearest(struct frame *frame)
 {
-    (void)most; // photographs that do not fit on the device are asked in batches
     size_t count = 0, kept = (size_t)(frame->params->nearest + 0.5f);
     struct orl_ranked *all = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count,
                                        sizeof *all);
@@ -178,13 +176,14 @@ static void rank(const struct frame *frame, struct candidate *candidates, double
     qsort(candidates, count, sizeof *candidates, better);
 }
 
-static enum orl_result choose_best(struct frame *frame, size_t most)
+// At most as many as the device holds at once.
+static enum orl_result choose_best(struct frame *frame)
 {
     // The best photographs by angle may all be clipped; radiance needs every exposure.
     if (frame->radiance)
-        return choose_all(frame, most);
+        return choose_all(frame);
     const struct orl_log *log = orl_gpu_log(frame->gpu);
-    size_t photo_count = frame->scene->photo_count, usable = 0;
+    size_t photo_count = frame->scene->photo_count, usable = 0, most = (size_t)frame->photos->slot_count;
     most = most < ORL_PHOTOS_PER_FRAME ? most : ORL_PHOTOS_PER_FRAME;
     struct candidate *candidates = orl_array(log, photo_count, sizeof *candidates);
     double *scores = orl_array(log, photo_count, sizeof *scores);
