@@ -1,12 +1,10 @@
 // Lists the pixels at depth discontinuities, each with the weight of its neighbours; in a photograph such
 // a pixel shows both sides. antialias.comp then averages the listed pixels. One invocation handles 2x2
 // pixels.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "shared/image.glsl"
 #include "edges/edge.glsl"
 #include "edges/edge_list.glsl"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(r32f, binding = 0) readonly uniform image2D depth; // < 0: estimated background depth
 
 void main()

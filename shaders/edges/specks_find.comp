@@ -1,10 +1,8 @@
 // Lists the pixels that can be specks. One invocation handles 2x2 pixels.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "shared/image.glsl"
 #include "edges/edge_list.glsl"
 #include "edges/speck.glsl"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rg8, binding = 0) readonly uniform image2D painted; // gather/tiled.comp
 
 void main()

@@ -2,10 +2,8 @@
 // defines fill_wants and fill_pixel. One invocation handles 2x2 pixels of each of ORL_FILL_RUN work groups side by side:
 // a software renderer runs what fills pixels for all invocations of a work group if it does for one.
 // FAR: the values are those of fill/slope.glsl.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "shared/image.glsl"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D filled;
 #include "fill/fill.glsl"
 

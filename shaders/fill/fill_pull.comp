@@ -1,12 +1,10 @@
 // Sums 2x2 finer pixels (Gortler 1996, pull).
 // FAR: the values are those of fill/slope.glsl.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "shared/image.glsl"
 #ifdef FAR
 #include "fill/slope.glsl"
 #endif
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D fine;
 layout(rgba32f, binding = 1) writeonly uniform image2D coarse;
 

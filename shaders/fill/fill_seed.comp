@@ -6,11 +6,9 @@
 // to this pixel, so that a clipped area does not become as dark as the wall beside it.
 // SEED_SURFACES: colour on surfaces.
 // SEED_GUESSES: colour on estimated background depth, for the blur. Without a define: colour.
-#define BLOCK_IMAGE
+#include "shared/image.glsl"
 #include "shared/pixel.glsl"
-#include "shared/render_blocks.h"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 #ifdef SEED_DEPTH
 #include "fill/slope.glsl"
 layout(r32f, binding = 0) readonly uniform image2D known;

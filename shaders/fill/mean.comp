@@ -1,13 +1,6 @@
 // Adds a finished picture to a sum in square roots of light. The last picture becomes the mean.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "fill/picture.glsl"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-#ifdef FINISHED
-layout(rgba16f, binding = 0) uniform image2D picture; // linear colour, coverage
-#else
-layout(rgba32f, binding = 0) uniform image2D picture;
-#endif
 layout(rgba32f, binding = 1) uniform image2D sum; // square roots of colour, coverage of the first
 
 void main()

@@ -1,7 +1,6 @@
 // The median of each channel over the painted pixels of the 3x3 neighbourhood: Orzan 2005, 4.4.4
 // and 4.5.2. HOLES: fills only surface pixels that no photograph painted, from 5x5 pixels.
-#define BLOCK_IMAGE
-#include "shared/render_blocks.h"
+#include "shared/image.glsl"
 
 #ifdef HOLES
 #define REACH 2
@@ -10,7 +9,6 @@
 #endif
 const int SIDE = 2 * REACH + 1, COUNT = SIDE * SIDE;
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
 layout(rgba32f, binding = 0) readonly uniform image2D picture; // colour, coverage
 layout(rgba32f, binding = 1) writeonly uniform image2D filtered;
 layout(r32f, binding = 2) readonly uniform image2D depth; // <= 0: no surface

@@ -1,15 +1,7 @@
-// Shows the room where nothing was painted before it. FINISHED: the painter has finished all pixels
-// but those that are unpainted.
-#define BLOCK_IMAGE
+// Shows the room where nothing was painted before it.
+#include "fill/picture.glsl"
 #include "shared/pixel.glsl"
-#include "shared/render_blocks.h"
 
-layout(local_size_x = ORL_PIXEL_GROUP_X, local_size_y = ORL_PIXEL_GROUP_Y) in;
-#ifdef FINISHED
-layout(rgba16f, binding = 0) uniform image2D picture;
-#else
-layout(rgba32f, binding = 0) uniform image2D picture;
-#endif
 layout(rgba32f, binding = 1) readonly uniform image2D room; // blended
 layout(r32f, binding = 2) readonly uniform image2D depth;
 
