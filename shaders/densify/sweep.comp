@@ -159,6 +159,17 @@ vec3 varied_plane(ivec2 at, vec2 pixel, vec3 plane, int kind)
     return other;
 }
 
+// A candidate's plane, continued to this pixel; away: from this pixel to the candidate. False: there is no such candidate.
+bool candidate_plane(ivec2 at, uvec4 candidates, int k, out ivec2 away, out vec3 plane)
+{
+    uint word = k < 4 ? (k < 2 ? candidates.x : candidates.y) : (k < 6 ? candidates.z : candidates.w);
+    uint offset = (word >> (16 * (k & 1))) & 0xffffu;
+    away = ivec2(int(offset & 255u) - 32, int(offset >> 8) - 32);
+    plane = imageLoad(planes, at + away).xyz;
+    plane.x -= dot(plane.yz, vec2(away));
+    return offset != 0u;
+}
+
 void main()
 {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, area.z);
@@ -170,19 +181,14 @@ void main()
     load_patch(at);
     uvec4 candidates = find_candidates(at);
     vec3 best_plane = imageLoad(planes, at).xyz;
+    ivec2 away;
 #ifdef GEOMETRIC
     float best = imageLoad(costs, at).r;
     for (int turn = 0; turn < tests.x + tests.y; turn++) {
         vec3 plane = best_plane;
         if (turn < tests.x) {
-            uint word = turn < 4 ? (turn < 2 ? candidates.x : candidates.y)
-                                 : (turn < 6 ? candidates.z : candidates.w);
-            uint offset = (word >> (16 * (turn & 1))) & 0xffffu;
-            if (offset == 0u)
+            if (!candidate_plane(at, candidates, turn, away, plane))
                 continue;
-            ivec2 away = ivec2(int(offset & 255u) - 32, int(offset >> 8) - 32);
-            plane = imageLoad(planes, at + away).xyz;
-            plane.x -= dot(plane.yz, vec2(away));
         } else {
             plane = varied_plane(at, pixel, best_plane, turn - tests.x);
         }
@@ -212,14 +218,8 @@ void main()
         vec3 plane = best_plane;
         uvec4 views = best_views;
         if (turn < tests.x) {
-            uint word = turn < 4 ? (turn < 2 ? candidates.x : candidates.y)
-                                 : (turn < 6 ? candidates.z : candidates.w);
-            uint offset = (word >> (16 * (turn & 1))) & 0xffffu;
-            if (offset == 0u)
+            if (!candidate_plane(at, candidates, turn, away, plane))
                 continue;
-            ivec2 away = ivec2(int(offset & 255u) - 32, int(offset >> 8) - 32);
-            plane = imageLoad(planes, at + away).xyz;
-            plane.x -= dot(plane.yz, vec2(away));
             views = imageLoad(view_costs, at + away);
         } else if (!refresh) {
             plane = varied_plane(at, pixel, best_plane, turn - tests.x);
