@@ -3,6 +3,7 @@
 // ranking.
 #include "gather/penalty.glsl"
 #include "gather/guess_blur.glsl"
+#include "gather/sample/srgb.glsl"
 
 // A pixel's surface point.
 struct spot {
@@ -66,39 +67,38 @@ float sight_weight(ranking r, int k)
     return one.penalty < NOT_SEEN ? pow(r.of[0].penalty / one.penalty, opt.sharpness) * fade : 0.0;
 }
 
-// What the photographs of a pixel show, the best one first, as photo_ranked reads it.
-struct samples {
-    vec4 shown[KEPT];
-    float weight[KEPT];
-    vec4 detail;  // of the best one
-    float varies; // how much the best one varies about its place
-};
-
-// Colour, and 1 if there is a sample; luma: the mean of w of what is shown; blur: for estimated depth. Samples far from
-// the consensus lose weight: pedestrians, leaves, reflections. The square roots of the weights make it a consensus of
-// all photographs rather than of the best one; the square roots of light make differences roughly perceptually uniform.
-// One fetch takes about the same detail from all photographs of a surface, so the best one lends its own to the others,
-// less the farther it is from the consensus.
-vec4 blend(spot s, ranking r, samples from, out float luma, out float blur)
+// Colour, and 1 if there is a sample; varies: how much the best photograph varies about its place; luma: the mean of w
+// of what is shown; blur: for estimated depth. Every photograph is read: see order. Samples far from the consensus lose
+// weight: pedestrians, leaves, reflections. The square roots of the weights make it a consensus of all photographs
+// rather than of the best one; the square roots of light make differences roughly perceptually uniform. One fetch takes
+// about the same detail from all photographs of a surface, so the best one lends its own to the others, less the farther
+// it is from the consensus.
+vec4 blend(spot s, ranking r, out float varies, out float luma, out float blur)
 {
-    vec4 vote = vec4(0.0), sum = vec4(0.0);
-    for (int k = 0; k < KEPT; k++)
-        vote += vec4(sqrt(from.shown[k].rgb), 1.0) * sqrt(from.weight[k]);
+    vec4 shown[KEPT], detail = vec4(0.0), vote = vec4(0.0), sum = vec4(0.0);
+    float weights[KEPT];
+    varies = 0.0;
+    for (int k = 0; k < KEPT; k++) {
+        sight one = r.of[k];
+        shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, detail, varies);
+        weights[k] = sight_weight(r, k);
+        vote += vec4(sqrt(shown[k].rgb), 1.0) * sqrt(weights[k]);
+    }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);
     vec2 apart = vec2(0.0); // sum of squares * weight, sum of weights
-    float first = from.weight[0], kept = 0.0, total = 0.0; // of the best one's weight, the share that it keeps
+    float first = weights[0], kept = 0.0, total = 0.0; // of the best one's weight, the share that it keeps
     for (int k = 0; k < KEPT; k++) {
-        vec3 off = sqrt(from.shown[k].rgb) - mean;
-        float share = 1.0 / (1.0 + dot(off, off) * outlier_severity), weight = from.weight[k] * share;
-        apart += vec2(dot(off, off), 1.0) * from.weight[k];
-        sum += from.shown[k] * weight;
+        vec3 off = sqrt(shown[k].rgb) - mean;
+        float share = 1.0 / (1.0 + dot(off, off) * outlier_severity), weight = weights[k] * share;
+        apart += vec2(dot(off, off), 1.0) * weights[k];
+        sum += shown[k] * weight;
         total += weight;
         kept = k == 0 ? share : kept;
     }
     apart.y = max(apart.y, 1e-30);
     blur = guess_blur(s.p, r.of[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
-    vec4 shown = sum + kept * from.detail * (sum - kept * first * from.shown[0]);
-    shown /= max(total, 1e-30);
-    luma = shown.a;
-    return total > 0.0 ? vec4(shown.rgb, 1.0) : vec4(0.0);
+    vec4 color = sum + kept * detail * (sum - kept * first * shown[0]);
+    color /= max(total, 1e-30);
+    luma = color.a;
+    return total > 0.0 ? vec4(color.rgb, 1.0) : vec4(0.0);
 }

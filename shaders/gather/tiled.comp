@@ -3,7 +3,6 @@
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/blend.glsl"
-#include "gather/sample/srgb.glsl"
 #include "shared/constants.h"
 #include "shared/pixel.glsl"
 #include <visibility>
@@ -30,14 +29,6 @@ float surface_penalty(float penalty)
 }
 
 #include "gather/consider.glsl"
-
-// What the k-th photograph of a ranking shows. Every one is read: see order.
-void look(ranking r, int k, inout samples to)
-{
-    sight one = r.of[k];
-    to.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, to.detail, to.varies);
-    to.weight[k] = sight_weight(r, k);
-}
 
 #ifdef SPECKS
 #include "edges/speck.glsl"
@@ -69,22 +60,16 @@ void main()
         for (int k = 0; k < 4; k++)
             rank(consider(i, source, spots[k]), c, rankings[k]);
     }
-    float lumas[4];
+    float lumas[4], varies[4];
 #ifdef SPECKS
-    float varies[4], light[4]; // light: 0 where nothing is painted
+    float light[4]; // 0 where nothing is painted
 #endif
     vec4 colors[4], seed = vec4(0.0), guess = vec4(0.0);
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
-        samples from;
-        from.detail = vec4(0.0);
-        from.varies = 0.0;
-        for (int n = 0; n < KEPT; n++)
-            look(rankings[k], n, from);
-        colors[k] = blend(spots[k], rankings[k], from, lumas[k], own);
+        colors[k] = blend(spots[k], rankings[k], varies[k], lumas[k], own);
 #ifdef SPECKS
-        varies[k] = from.varies;
         light[k] = colors[k].a > 0.0 ? max(speck_light(colors[k].rgb), 1.0 / 255.0) : 0.0;
 #endif
         vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);

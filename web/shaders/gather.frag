@@ -3,7 +3,6 @@ uniform float outlier_severity; // 1 / opt.outliers^2; 0: no outlier rejection
 #include "gather/penalty.glsl"
 #include "gather/hidden.glsl"
 #include "gather/blend.glsl"
-#include "gather/sample/srgb.glsl"
 #include "shared/pixel.glsl"
 
 uniform sampler2D view_depth; // < 0: guessed
@@ -44,23 +43,13 @@ void main()
         int i = photo_listed(list, c);
         rank(consider(i, photo_at(max(i, 0)), s), c, r);
     }
-    samples from;
-    from.detail = vec4(0.0);
-    from.varies = 0.0;
-    for (int k = 0; k < KEPT; k++) {
-        sight one = r.of[k];
-        from.weight[k] = sight_weight(r, k);
-        from.shown[k] = vec4(0.0);
-        if (from.weight[k] > 0.0)
-            from.shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, from.detail, from.varies);
-    }
-    float luma, blur;
-    vec4 color = blend(s, r, from, luma, blur);
+    float varies, luma, blur;
+    vec4 color = blend(s, r, varies, luma, blur);
     if (!(color.a > 0.0))
         return;
     painted = guessed && blur > 0.0 ? pixel_to_blur(color.rgb, blur) : pixel_finished(color.rgb, !guessed);
     float number = photo_at(r.of[0].index).file.x;
-    source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 0.5 + 0.5 * from.varies);
+    source = vec4(floor(number / 256.0) / 255.0, mod(number, 256.0) / 255.0, 0.0, 0.5 + 0.5 * varies);
 #ifdef SOFT
     source.b = luma;
 #endif
