@@ -97,7 +97,8 @@ def main():
     cameras = json.loads(run(tool, "cameras", options.scene))
     test = [c for c in cameras if c["test"]] or cameras[:3]
     if options.views:
-        test = [test[i * len(test) // options.views] for i in range(min(options.views, len(test)))]
+        count = min(options.views, len(test))
+        test = [test[i * len(test) // count] for i in range(count)]
     server, browser = Server(f"{work}/site"), Browser(*map(int, options.window.split("x")))
     try:
         start = time.monotonic()
