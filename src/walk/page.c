@@ -9,7 +9,6 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "core/text.h"
 #include "gpu/shader_table.h"
 #include "walk/internal.h"
 #include "walk/web_table.h"
@@ -22,7 +21,7 @@ static const char *const shared_shaders[] = {
     "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl", "gather/projection.glsl",
     "gather/sample/srgb.glsl", "gather/stored.glsl", "guess/apply.glsl", "guess/cost.glsl", "guess/path.glsl",
     "guess/pick.glsl", "guess/planes.glsl", "proxy/holes.glsl", "proxy/octahedron.glsl", "proxy/push.glsl",
-    "proxy/support.glsl", "proxy/surfel.glsl", "shared/constants.h", "shared/penalty.h", "shared/pixel.glsl",
+    "proxy/surfel.glsl", "shared/constants.h", "shared/penalty.h", "shared/pixel.glsl",
     "shared/srgb.glsl", "soft/coarse.glsl", "soft/luma.glsl", "soft/mixed.glsl", "soft/opacity.glsl",
     "soft/seen.glsl", "soft/shown.glsl", NULL};
 static const size_t FILE_MAX = (size_t)1 << 30;
@@ -221,15 +220,20 @@ static const char own_shaders[] = "shaders/"; // in the table of the page's file
 static enum orl_result write_shaders(struct site *site)
 {
     json_t *shaders = json_object();
+    enum orl_result result = ORL_OK;
     size_t prefix = strlen(own_shaders);
     for (const struct orl_web_file *f = orl_web_table; f->name; f++)
         if (strncmp(f->name, own_shaders, prefix) == 0)
             json_object_set_new(shaders, f->name + prefix, json_string(f->text));
-    for (const struct orl_shader_file *f = orl_shader_table; f->name; f++)
-        if (orl_text_is_one_of(f->name, shared_shaders))
-            json_object_set_new(shaders, f->name, json_string(f->text));
+    for (const char *const *name = shared_shaders; *name && result == ORL_OK; name++) {
+        const struct orl_shader_file *f = orl_shader_table;
+        while (f->name && strcmp(f->name, *name) != 0)
+            f++;
+        if (json_object_set_new(shaders, *name, json_string(f->text)) != 0)
+            result = orl_fail(site->log, ORL_ERR_NOT_FOUND, "%s: the page needs this shader", *name);
+    }
     char *text = json_dumps(shaders, JSON_COMPACT);
-    enum orl_result result = text ? write_first(site, "shaders.json", text) : ORL_ERR_MEMORY;
+    ORL_THEN(result, text ? write_first(site, "shaders.json", text) : ORL_ERR_MEMORY);
     free(text);
     json_decref(shaders);
     return result;
