@@ -100,35 +100,41 @@ struct stage {
     const char *tells; // part of the record that scene.json needs
     bool repeatable;   // a repeated run gives the same result, so that later stages stay valid
     bool (*wanted)(const struct orl_job *job); // NULL: always
+    bool named;        // what it tells is a list, each item with a name
+    const char *reads; // file of the stage that it needs that may be deleted once it is done; NULL: none
+    // About what it writes: of each photograph (features and matches), and of each pixel (docs/how/scale.md).
+    double photo_bytes, pixel_bytes;
+    const char *begun; // has all of that where an interrupted run or other jobs made it; NULL: nothing
 };
 
 static const struct stage stages[ORL_STAGE_COUNT] = {
-    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, NULL, {0}, NULL, true,
-                           NULL},
+    [ORL_STAGE_COLLECT] = {"collect", 1, ORL_STAGE_COLLECT, photo_hashes, .repeatable = true},
     [ORL_STAGE_CALIBRATE] = {"calibrate", 2, ORL_STAGE_COLLECT, calibrate_settings,
                              orl_stage_calibrate, {".oriel/calibrate/model"}, "left_out", false,
-                             NULL},
+                             .photo_bytes = 2 << 20},
     [ORL_STAGE_UNDISTORT] = {"undistort", 1, ORL_STAGE_CALIBRATE, undistort_settings,
                              orl_stage_undistort,
-                             {"sparse", "images", "images_linear", "masks"}, "largest", true, NULL},
+                             {"sparse", "images", "images_linear", "masks"}, "largest", true,
+                             .pixel_bytes = 2},
     // Depth maps may be deleted once they are read, and COLMAP's differ from run to run.
     [ORL_STAGE_DENSIFY] = {"densify", ORL_DENSIFY_VERSION, ORL_STAGE_UNDISTORT, test_settings,
-                           orl_stage_densify, {0}, "tool", false, NULL},
+                           orl_stage_densify, {0}, "tool", false, .pixel_bytes = 52,
+                           .begun = "stereo/depth_maps"},
     [ORL_STAGE_FUSE] = {"fuse", ORL_FUSE_VERSION, ORL_STAGE_DENSIFY,
-                        orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true, NULL},
+                        orl_stage_fuse_settings, orl_stage_fuse, {".oriel/fused.ply"}, "points", true,
+                        .reads = "stereo/.oriel-key", .pixel_bytes = 6},
     [ORL_STAGE_RADII] = {"radii", 4, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
-                         {"points.ply", ORL_LOD_NAME}, "points", true, NULL},
+                         {"points.ply", ORL_LOD_NAME}, "points", true, .pixel_bytes = 3},
     [ORL_STAGE_GROUND] = {"ground", 4, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
-                          "ground", true, NULL},
+                          "ground", .repeatable = true},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, test_settings, orl_stage_mesh, {"mesh.ply"},
-                        "triangles", true, is_mesh_wanted},
+                        "triangles", true, .wanted = is_mesh_wanted},
     [ORL_STAGE_EXPOSE] = {"expose", 4, ORL_STAGE_RADII, expose_settings, orl_stage_expose, {0},
-                          "photographs", true, NULL},
-    [ORL_STAGE_TUNE] = {"tune", 2, ORL_STAGE_EXPOSE, NULL, orl_stage_tune, {0}, "tuned", true,
-                        NULL},
+                          "photographs", true, .named = true},
+    [ORL_STAGE_TUNE] = {"tune", 2, ORL_STAGE_EXPOSE, NULL, orl_stage_tune, {0}, "tuned", .repeatable = true},
     [ORL_STAGE_OCCLUDERS] = {"occluders", 1, ORL_STAGE_TUNE, occluders_settings,
                              orl_stage_occluders, {"occluders"}, "occluded", true,
-                             are_occluders_wanted},
+                             .wanted = are_occluders_wanted},
 };
 
 static bool is_wanted(const struct orl_job *job, int id)
@@ -305,7 +311,7 @@ static enum orl_result check_record(const struct orl_job *job, json_t *record,
         return ORL_OK;
     const json_t *told = json_object_get(record, stages[id].tells);
     bool named = true;
-    for (size_t i = 0; id == ORL_STAGE_EXPOSE && i < json_array_size(told); i++)
+    for (size_t i = 0; stages[id].named && i < json_array_size(told); i++)
         named = named && orl_json_text(json_array_get(told, i), "name");
     const json_t *files = json_object_get(record, "files");
     // No photograph may show occluders; then there are no files of them.
@@ -349,9 +355,9 @@ static enum orl_result find_current(const struct orl_job *job, bool current[ORL_
     current[ORL_STAGE_COLLECT] = true;
     for (int i = 1; i < ORL_STAGE_COUNT; i++)
         ORL_TRY(look_for(job, (enum orl_stage_id)i, &there[i]));
-    // Fuse reads the depth maps, which may be deleted after it.
-    if ((!there[ORL_STAGE_FUSE] || job->params->keep == ORL_KEEP_ALL) && !orl_job_has(job, "stereo/.oriel-key"))
-        there[ORL_STAGE_DENSIFY] = false;
+    for (int i = 1; i < ORL_STAGE_COUNT; i++)
+        if (stages[i].reads && (!there[i] || job->params->keep == ORL_KEEP_ALL) && !orl_job_has(job, stages[i].reads))
+            there[stages[i].needs] = false;
     for (int i = 1; i < ORL_STAGE_COUNT; i++) {
         bool after = settled[stages[i].needs];
         current[i] = after && there[i];
@@ -407,22 +413,11 @@ static double scene_pixels(const struct orl_job *job)
     return pixels;
 }
 
-// About what a stage writes: of each photograph (features and matches), and of each pixel
-// (docs/how/scale.md).
 static double disk_need(const struct orl_job *job, enum orl_stage_id id)
 {
-    static const struct {
-        double photo_bytes, pixel_bytes;
-    } needs[ORL_STAGE_COUNT] = {
-        [ORL_STAGE_CALIBRATE] = {2 << 20, 0}, [ORL_STAGE_UNDISTORT] = {0, 2},
-        [ORL_STAGE_DENSIFY] = {0, 52},        [ORL_STAGE_FUSE] = {0, 6},
-        [ORL_STAGE_RADII] = {0, 3},
-    };
-    // Maps that an interrupted run or other jobs have made are there already.
-    if (id == ORL_STAGE_DENSIFY && orl_job_has(job, "stereo/depth_maps"))
+    if (stages[id].begun && orl_job_has(job, stages[id].begun))
         return 0;
-    return needs[id].photo_bytes * (double)job->source_count +
-           needs[id].pixel_bytes * scene_pixels(job);
+    return stages[id].photo_bytes * (double)job->source_count + stages[id].pixel_bytes * scene_pixels(job);
 }
 
 static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json_t *record)
