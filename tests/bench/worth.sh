@@ -9,7 +9,7 @@ set -euo pipefail
 oriel=$1
 shift
 without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignment=off
-    front_layer=0 outliers=0 sampling=bilinear)
+    front_layer=0 outliers=0 photos_per_pixel=2 sampling=bilinear)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
