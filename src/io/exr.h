@@ -51,9 +51,6 @@ enum orl_result orl_exr_write(const struct orl_log *log, const char *path,
 // floats, channels R G B.
 enum orl_result orl_linear_write(const struct orl_log *log, const char *path,
                                  const struct orl_image *image) ORL_CHECK_RESULT;
-// Reads the size of the first part's data window from the header.
-enum orl_result orl_exr_size(const struct orl_log *log, const char *path, int *width,
-                             int *height) ORL_CHECK_RESULT;
 // Reads `count` named channels into an interleaved float image (at most 4).
 // ORL_ERR_NOT_FOUND names the first channel that the file lacks.
 enum orl_result orl_exr_read(const struct orl_log *log, const char *path,

@@ -8,27 +8,13 @@
 #include "core/memory.h"
 #include "io/internal.h"
 
-struct heif_file {
-    const struct orl_log *log;
-    const char *path;
+struct heif_job {
+    struct orl_picture_file *file;
     struct heif_context *context;
     struct heif_image_handle *picture; // the primary one
-    uint64_t width, height;
-    int bits;
 };
 
-bool orl_heif_is(const uint8_t *data, size_t size)
-{
-    static const char *const brands[] = {"heic", "heix", "heim", "heis", "mif1", "avif"};
-    if (size < 12 || memcmp(data + 4, "ftyp", 4) != 0)
-        return false;
-    for (size_t i = 0; i < ORL_COUNT(brands); i++)
-        if (memcmp(data + 8, brands[i], 4) == 0)
-            return true;
-    return false;
-}
-
-static enum orl_result check(const struct heif_file *file, struct heif_error error)
+static enum orl_result check(const struct heif_job *job, struct heif_error error)
 {
     if (error.code == heif_error_Ok)
         return ORL_OK;
@@ -38,70 +24,61 @@ static enum orl_result check(const struct heif_file *file, struct heif_error err
                 error.code == heif_error_Unsupported_filetype
             ? ORL_ERR_UNSUPPORTED
             : ORL_ERR_FORMAT;
-    return orl_fail(file->log, result, "%s: HEIF: %s", file->path, error.message);
+    return orl_fail(job->file->log, result, "%s: HEIF: %s", job->file->path, error.message);
 }
 
-static void close_heif(struct heif_file *file)
+static enum orl_result open_heif(struct heif_job *job)
 {
-    heif_image_handle_release(file->picture);
-    if (file->context)
-        heif_context_free(file->context);
-}
-
-// On success and failure alike, the caller must call close_heif.
-static enum orl_result open_heif(const struct orl_log *log, const char *path,
-                                 struct heif_file *file)
-{
-    *file = (struct heif_file){.log = log, .path = path, .context = heif_context_alloc()};
-    if (!file->context)
-        return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory for a HEIF reader", path);
-    ORL_TRY(check(file, heif_context_read_from_file(file->context, path, NULL)));
-    ORL_TRY(check(file, heif_context_get_primary_image_handle(file->context, &file->picture)));
-    file->width = (uint64_t)heif_image_handle_get_width(file->picture);
-    file->height = (uint64_t)heif_image_handle_get_height(file->picture);
-    file->bits = heif_image_handle_get_luma_bits_per_pixel(file->picture);
-    return orl_picture_check_size(log, path, file->width, file->height);
+    job->context = heif_context_alloc();
+    if (!job->context)
+        return orl_fail(job->file->log, ORL_ERR_MEMORY, "%s: no memory for a HEIF reader", job->file->path);
+    ORL_TRY(check(job, heif_context_read_from_file(job->context, job->file->path, NULL)));
+    ORL_TRY(check(job, heif_context_get_primary_image_handle(job->context, &job->picture)));
+    job->file->info.bits = heif_image_handle_get_luma_bits_per_pixel(job->picture);
+    return orl_picture_set_size(job->file, (uint64_t)heif_image_handle_get_width(job->picture),
+                                (uint64_t)heif_image_handle_get_height(job->picture));
 }
 
 // --- EXIF ---
 
 // Four bytes ahead of the block say how far on the TIFF data begins.
-static enum orl_result read_exif(const struct heif_file *file, struct orl_exif *exif)
+static enum orl_result read_exif(const struct heif_job *job)
 {
+    struct orl_picture_file *file = job->file;
     static const uint8_t head[6] = "Exif\0";
     heif_item_id id;
-    if (heif_image_handle_get_list_of_metadata_block_IDs(file->picture, "Exif", &id, 1) < 1)
+    if (heif_image_handle_get_list_of_metadata_block_IDs(job->picture, "Exif", &id, 1) < 1)
         return ORL_OK;
-    size_t size = heif_image_handle_get_metadata_size(file->picture, id);
+    size_t size = heif_image_handle_get_metadata_size(job->picture, id);
     uint8_t *room = orl_array(file->log, sizeof head + size, 1);
     ORL_TRY_MEMORY(room);
     uint8_t *block = room + sizeof head;
     enum orl_result result =
-        check(file, heif_image_handle_get_metadata(file->picture, id, block));
+        check(job, heif_image_handle_get_metadata(job->picture, id, block));
     size_t start = size < 4 ? size
                             : 4 + ((size_t)block[0] << 24 | (size_t)block[1] << 16 |
                                    (size_t)block[2] << 8 | (size_t)block[3]);
     if (result == ORL_OK && start < size) {
         uint8_t *data = block + start - sizeof head; // over what stands ahead of the TIFF data
         memcpy(data, head, sizeof head);
-        result = orl_exif_decode(file->log, file->path, data, sizeof head + size - start, exif);
-        exif->orientation = 1; // the pixels are turned already
+        result = orl_exif_decode(file->log, file->path, data, sizeof head + size - start, &file->exif);
+        file->exif.orientation = 1; // the pixels are turned already
     }
     free(room);
     return result;
 }
 
 // Apple's, or that of ISO 21496-1.
-static bool has_gain_map(const struct heif_file *file)
+static bool has_gain_map(const struct heif_job *job)
 {
     enum { MOST = 16 };
     heif_item_id ids[MOST];
     bool found = false;
-    int count = heif_image_handle_get_list_of_auxiliary_image_IDs(file->picture, 0, ids, MOST);
+    int count = heif_image_handle_get_list_of_auxiliary_image_IDs(job->picture, 0, ids, MOST);
     for (int i = 0; i < count && !found; i++) {
         struct heif_image_handle *other = NULL;
         const char *type = NULL;
-        if (heif_image_handle_get_auxiliary_image_handle(file->picture, ids[i], &other).code ==
+        if (heif_image_handle_get_auxiliary_image_handle(job->picture, ids[i], &other).code ==
                 heif_error_Ok &&
             heif_image_handle_get_auxiliary_type(other, &type).code == heif_error_Ok)
             found = strstr(type, "gainmap") || strstr(type, "21496");
@@ -111,58 +88,40 @@ static bool has_gain_map(const struct heif_file *file)
     return found;
 }
 
-enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
-                                 struct orl_picture_info *info, struct orl_exif *exif)
-{
-    struct heif_file file;
-    enum orl_result result = open_heif(log, path, &file);
-    if (result == ORL_OK) {
-        *info = (struct orl_picture_info){.width = (int)file.width, .height = (int)file.height,
-                                          .bits = file.bits,
-                                          .gain_map = has_gain_map(&file)};
-        result = read_exif(&file, exif);
-    }
-    close_heif(&file);
-    return result;
-}
-
 // --- pixels ---
 
 // ORL_ERR_UNSUPPORTED for the transfer curves of HDR video, whose white is not a picture's.
-static enum orl_result check_curve(const struct heif_file *file)
+static enum orl_result check_curve(const struct heif_job *job)
 {
     struct heif_color_profile_nclx *profile = NULL;
-    struct heif_error error = heif_image_handle_get_nclx_color_profile(file->picture, &profile);
+    struct heif_error error = heif_image_handle_get_nclx_color_profile(job->picture, &profile);
     bool hdr = error.code == heif_error_Ok &&
                (profile->transfer_characteristics ==
                     heif_transfer_characteristic_ITU_R_BT_2100_0_PQ ||
                 profile->transfer_characteristics ==
                     heif_transfer_characteristic_ITU_R_BT_2100_0_HLG);
     heif_nclx_color_profile_free(profile); // made even for a curve that libheif does not know
-    return hdr ? orl_fail(file->log, ORL_ERR_UNSUPPORTED,
+    return hdr ? orl_fail(job->file->log, ORL_ERR_UNSUPPORTED,
                           "%s: HEIF: its samples are HDR (PQ or HLG); save it as SDR or as EXR",
-                          file->path)
+                          job->file->path)
                : ORL_OK;
 }
 
-void orl_heif_profile(const struct orl_log *log, const char *path, int *bits, struct orl_profile **profile)
+static void read_profile(const struct heif_job *job)
 {
-    struct heif_file file;
-    bool open = open_heif(NULL, path, &file) == ORL_OK;
-    size_t size = open ? heif_image_handle_get_raw_color_profile_size(file.picture) : 0;
-    void *icc = size ? orl_array(log, size, 1) : NULL;
-    *bits = open ? file.bits : 0;
-    *profile = icc && heif_image_handle_get_raw_color_profile(file.picture, icc).code == heif_error_Ok
-                   ? orl_profile_create(log, path, icc, size)
-                   : NULL;
+    struct orl_picture_file *file = job->file;
+    size_t size = heif_image_handle_get_raw_color_profile_size(job->picture);
+    void *icc = size ? orl_array(file->log, size, 1) : NULL;
+    if (icc && heif_image_handle_get_raw_color_profile(job->picture, icc).code == heif_error_Ok)
+        file->profile = orl_profile_create(file->profile_log, file->path, icc, size);
     free(icc);
-    close_heif(&file);
 }
 
-static enum orl_result take_pixels(const struct heif_file *file, const struct heif_image *from,
+static enum orl_result take_pixels(const struct heif_job *job, const struct heif_image *from,
                                    struct orl_image *image)
 {
-    int stride, wide = file->bits > 8;
+    const struct orl_picture_file *file = job->file;
+    int stride, wide = file->info.bits > 8;
     const uint8_t *rows = heif_image_get_plane_readonly(from, heif_channel_interleaved, &stride);
     int bits = heif_image_get_bits_per_pixel_range(from, heif_channel_interleaved);
     float white = (float)((1u << bits) - 1);
@@ -181,22 +140,34 @@ static enum orl_result take_pixels(const struct heif_file *file, const struct he
     return ORL_OK;
 }
 
-enum orl_result orl_heif_decode(const struct orl_log *log, const char *path, struct orl_image *image)
+static enum orl_result decode(const struct heif_job *job, struct orl_image *image)
 {
-    struct heif_file file;
+    const struct orl_picture_file *file = job->file;
+    bool wide = file->info.bits > 8;
     struct heif_image *decoded = NULL;
-    enum orl_result result = open_heif(log, path, &file);
-    bool wide = file.bits > 8;
     // Bytes per pixel: planes and RGB of up to 16 bits each, and three samples.
-    ORL_THEN(result, orl_picture_check_memory(log, path, file.width, file.height, 6 + 6 + 3 * sizeof(float)));
-    ORL_THEN(result, check_curve(&file));
-    ORL_THEN(result, check(&file, heif_decode_image(file.picture, &decoded, heif_colorspace_RGB,
-                                                    wide ? heif_chroma_interleaved_RRGGBB_LE
-                                                         : heif_chroma_interleaved_RGB, NULL)));
-    ORL_THEN(result, orl_image_init(log, image, (int)file.width, (int)file.height, 3,
+    ORL_TRY(orl_picture_check_memory(file, 6 + 6 + 3 * sizeof(float)));
+    ORL_TRY(check_curve(job));
+    read_profile(job);
+    enum orl_result result = check(job, heif_decode_image(job->picture, &decoded, heif_colorspace_RGB,
+                                                          wide ? heif_chroma_interleaved_RRGGBB_LE
+                                                               : heif_chroma_interleaved_RGB, NULL));
+    ORL_THEN(result, orl_image_init(file->log, image, file->info.width, file->info.height, 3,
                                     wide ? ORL_PIXEL_F32 : ORL_PIXEL_U8));
-    ORL_THEN(result, take_pixels(&file, decoded, image));
+    ORL_THEN(result, take_pixels(job, decoded, image));
     heif_image_release(decoded);
-    close_heif(&file);
+    return result;
+}
+
+enum orl_result orl_heif_read(struct orl_picture_file *file, struct orl_image *image)
+{
+    struct heif_job job = {.file = file};
+    enum orl_result result = open_heif(&job);
+    ORL_THEN(result, image ? decode(&job, image) : read_exif(&job));
+    if (result == ORL_OK && !image)
+        file->info.gain_map = has_gain_map(&job);
+    heif_image_handle_release(job.picture);
+    if (job.context)
+        heif_context_free(job.context);
     return result;
 }

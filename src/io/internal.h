@@ -1,5 +1,4 @@
-// Private to src/io: one reader per file format. Where a function also takes data or a stream,
-// `path` is for messages only.
+// Private to src/io: one reader per file format.
 #ifndef ORL_IO_INTERNAL_H
 #define ORL_IO_INTERNAL_H
 
@@ -8,78 +7,48 @@
 #include "core/memory.h"
 #include "io/picture.h"
 
-// Larger pictures are refused. Photographs are smaller, and a few hostile bytes must not
-// make Oriel allocate all memory.
-#define ORL_PICTURE_MAX_PIXELS ((uint64_t)1 << 30)
+// A picture's file as it is read.
+struct orl_picture_file {
+    const struct orl_log *log;
+    const struct orl_log *profile_log; // is told of a colour profile that cannot be used
+    const char *path;
+    FILE *stream;   // at the file's start; the libraries of TIFF, EXR, RAW and HEIF read the path instead
+    uint64_t bytes; // of the file
+    int channels;   // wanted: 1: of JPEG the luma that it holds; 4: of PNG with alpha, opaque where there is none
+    // Set by the reader:
+    struct orl_picture_info info;
+    struct orl_exif exif;
+    struct orl_profile *profile; // owned; NULL: the colours are taken as sRGB
+    bool light;                  // pixels are linear light
+};
 
-// Checks that the size in the header is within ORL_IMAGE_MAX_SIDE and ORL_PICTURE_MAX_PIXELS.
-enum orl_result orl_picture_check_size(const struct orl_log *log, const char *path,
-                                       uint64_t width, uint64_t height);
+// Reads the header, and with `image` the pixels too: of 3 channels unless others are wanted, U8 or F32, as stored in
+// [0, 1], or of light. After an error the caller releases what there is of the image and the profile.
+typedef enum orl_result orl_picture_reader(struct orl_picture_file *file, struct orl_image *image);
+orl_picture_reader orl_jpeg_read, orl_png_read, orl_pnm_read, orl_tiff_read, orl_exr_read_picture, orl_raw_read,
+    orl_heif_read;
 
-// Checks the size, and also that the bytes per pixel that decoding takes fit the available memory.
-// Called before anything of that size is allocated.
-enum orl_result orl_picture_check_memory(const struct orl_log *log, const char *path,
-                                         uint64_t width, uint64_t height,
-                                         uint64_t bytes_per_pixel);
+// Opens the stream and sets `bytes`.
+enum orl_result orl_picture_open(struct orl_picture_file *file);
+// Sets info.width and .height once they are within ORL_IMAGE_MAX_SIDE and 2^30 pixels.
+enum orl_result orl_picture_set_size(struct orl_picture_file *file, uint64_t width, uint64_t height);
+// Checks that the bytes per pixel that decoding takes fit the available memory. Called before anything of
+// that size is allocated.
+enum orl_result orl_picture_check_memory(const struct orl_picture_file *file, uint64_t bytes_per_pixel);
+// Checks that the file has at least these bytes: a few hostile ones must not claim a large picture.
+enum orl_result orl_picture_check_bytes(const struct orl_picture_file *file, uint64_t least);
+// By Google's Photo Sphere schema, which flat pictures may have, too.
+bool orl_xmp_tells_panorama(const void *xmp, size_t size);
 
 // Chromaticities x, y of a space of RGB colours.
 struct orl_primaries {
     double white[2], red[2], green[2], blue[2];
 };
 extern const struct orl_primaries orl_primaries_rec709; // sRGB's, too
-
-// The header of a picture, read from a stream at its start. exif: the EXIF block ("Exif\0\0" and
-// TIFF data), of no bytes when the file has none before its pixels. The same of icc, a colour profile.
-struct orl_picture_header {
-    struct orl_picture_info info; // but for `profiled`, which gamma, primaries, icc and exif tell
-    struct orl_bytes exif, icc;
-    double gamma; // PNG: samples are light to this power; 0: they have sRGB's curve
-    struct orl_primaries primaries; // PNG; all 0: sRGB's
-};
-// By Google's Photo Sphere schema, which flat pictures may have, too.
-bool orl_xmp_tells_panorama(const void *xmp, size_t size);
-enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
-                                     struct orl_picture_header *header);
-enum orl_result orl_png_read_header(const struct orl_log *log, const char *path, FILE *stream,
-                                    struct orl_picture_header *header);
-
-// Decode samples as stored, to U8 RGB, or of JPEG with 1 channel to the luma that it holds. Of PNG also to F32 in [0, 1]: with
-// ORL_PNG_RGB_DEEP always, and with ORL_PNG_RGBA where the file has 16 bits a sample. Alpha is opaque where the file has none.
-enum orl_png_kind { ORL_PNG_RGB, ORL_PNG_RGB_DEEP, ORL_PNG_RGBA };
-enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                                size_t size, int channels, struct orl_image *image);
-enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, enum orl_png_kind kind, struct orl_image *image);
-// True for binary Netpbm files (P4, P5, P6), recognised by their first bytes.
-bool orl_pnm_is(const uint8_t *data, size_t size);
-enum orl_result orl_pnm_read_header(const struct orl_log *log, const char *path, FILE *stream,
-                                    struct orl_picture_header *header);
-enum orl_result orl_pnm_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, struct orl_image *image);
-
-// TIFF, RAW and HEIF are read from the file at `path`, as their libraries require; exif is filled from the header.
-// Values of TIFF and RAW are linear light, F32 x3. After an error the caller releases what there is of the image.
-enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
-                                 struct orl_picture_info *info, struct orl_exif *exif);
-enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,
-                                       struct orl_image *image);
-enum orl_result orl_raw_inspect(const struct orl_log *log, const char *path,
-                                struct orl_picture_info *info, struct orl_exif *exif);
-enum orl_result orl_raw_decode_linear(const struct orl_log *log, const char *path,
-                                      struct orl_image *image);
-
-// The primaries that an EXR file states in "chromaticities"; false: they are those of Rec. 709.
-bool orl_exr_primaries(const char *path, struct orl_primaries *primaries);
-
-struct orl_profile;
-// HEIC and AVIF, recognised by their first 12 bytes.
-bool orl_heif_is(const uint8_t *data, size_t size);
-enum orl_result orl_heif_inspect(const struct orl_log *log, const char *path,
-                                 struct orl_picture_info *info, struct orl_exif *exif);
-// Bits of a sample, and the colour profile; NULL: the colours are taken as sRGB. 0 and NULL for a damaged file.
-void orl_heif_profile(const struct orl_log *log, const char *path, int *bits, struct orl_profile **profile);
-// Samples as stored, x3: U8, or of more than 8 bits F32 in [0, 1].
-enum orl_result orl_heif_decode(const struct orl_log *log, const char *path, struct orl_image *image);
+// Sets the profile: by ICC, where there is one; by samples that are light to the power `gamma` (0: sRGB's curve) and
+// by primaries (all 0: sRGB's); else by EXIF, which has been read.
+void orl_picture_set_profile(struct orl_picture_file *file, const void *icc, size_t icc_size, double gamma,
+                             const struct orl_primaries *primaries);
 
 // A conversion from the RGB or grey space of a colour profile (ICC) to linear light, Rec. 709
 // primaries.

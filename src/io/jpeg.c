@@ -13,7 +13,7 @@
 #include "io/internal.h"
 
 enum {
-    // Enough for the coefficients of a progressive picture of ORL_PICTURE_MAX_PIXELS.
+    // Enough for the coefficients of a progressive picture of the largest size.
     MAX_MEMORY_GIB = 8,
     // More scans than any encoder writes. Each scan costs time for every pixel.
     MAX_SCANS = 200,
@@ -115,75 +115,59 @@ static bool is_gain_map(const struct jpeg_marker_struct *marker)
             memcmp(marker->data, iso, sizeof iso) == 0);
 }
 
-static enum orl_result read_header(struct jpeg_job *job, j_decompress_ptr info, FILE *stream,
-                                   struct orl_picture_header *header)
+static enum orl_result take_header(j_decompress_ptr info, struct orl_picture_file *file)
 {
-    if (setjmp(job->on_error))
-        return fail(job);
-    jpeg_create_decompress(info);
-    jpeg_save_markers(info, JPEG_APP0 + 1, 0xffff);
-    jpeg_save_markers(info, JPEG_APP0 + 2, 0xffff);
-    jpeg_stdio_src(info, stream);
-    jpeg_read_header(info, TRUE);
-    ORL_TRY(orl_picture_check_size(job->log, job->path, info->image_width, info->image_height));
-    header->info = (struct orl_picture_info){.width = (int)info->image_width, .height = (int)info->image_height,
-                                             .bits = info->data_precision};
+    JOCTET *icc = NULL;
+    unsigned icc_size = 0;
+    const struct jpeg_marker_struct *exif = NULL;
+    ORL_TRY(orl_picture_set_size(file, info->image_width, info->image_height));
+    file->info.bits = info->data_precision;
     for (jpeg_saved_marker_ptr marker = info->marker_list; marker; marker = marker->next) {
-        header->info.panorama |= is_xmp(marker) && orl_xmp_tells_panorama(marker->data, marker->data_length);
-        header->info.gain_map |= is_gain_map(marker);
-        if (is_exif(marker) && !header->exif.size)
-            ORL_TRY(orl_bytes_add(job->log, &header->exif, marker->data, marker->data_length));
+        file->info.panorama |= is_xmp(marker) && orl_xmp_tells_panorama(marker->data, marker->data_length);
+        file->info.gain_map |= is_gain_map(marker);
+        if (is_exif(marker) && !exif)
+            exif = marker;
     }
-    JOCTET *icc;
-    unsigned icc_size;
-    if (jpeg_read_icc_profile(info, &icc, &icc_size))
-        header->icc = (struct orl_bytes){.data = (char *)icc, .size = icc_size};
+    if (exif)
+        ORL_TRY(orl_exif_decode(file->log, file->path, exif->data, exif->data_length, &file->exif));
+    jpeg_read_icc_profile(info, &icc, &icc_size);
+    orl_picture_set_profile(file, icc, icc_size, 0, &(struct orl_primaries){0});
+    free(icc);
     return ORL_OK;
-}
-
-enum orl_result orl_jpeg_read_header(const struct orl_log *log, const char *path, FILE *stream,
-                                     struct orl_picture_header *header)
-{
-    struct jpeg_job job = {0};
-    struct jpeg_decompress_struct info = {0};
-    start_job(&job, (j_common_ptr)&info, log, path);
-    enum orl_result result = read_header(&job, &info, stream, header);
-    jpeg_destroy_decompress(&info);
-    return result;
 }
 
 // --- pixels ---
 
-static enum orl_result check_header(const struct jpeg_job *job,
-                                    const struct jpeg_decompress_struct *info, size_t size)
+static enum orl_result check_header(const struct orl_picture_file *file, j_decompress_ptr info)
 {
     // libjpeg keeps a progressive picture as two-byte coefficients until its last scan.
-    uint64_t pixel = 3 + (jpeg_has_multiple_scans((j_decompress_ptr)(uintptr_t)info)
-                              ? 2 * (uint64_t)info->num_components : 0);
-    ORL_TRY(orl_picture_check_memory(job->log, job->path, info->image_width, info->image_height, pixel));
+    uint64_t pixel = 3 + (jpeg_has_multiple_scans(info) ? 2 * (uint64_t)info->num_components : 0);
+    ORL_TRY(orl_picture_check_memory(file, pixel));
     if (info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK)
-        return orl_fail(job->log, ORL_ERR_FORMAT,
-                        "%s: CMYK print colours cannot be used; save it as RGB", job->path);
-    if ((uint64_t)info->image_width * info->image_height > (uint64_t)size * MAX_PIXELS_PER_BYTE)
-        return orl_fail(job->log, ORL_ERR_FORMAT, "%s: %zu bytes cannot hold %ux%u pixels",
-                        job->path, size, info->image_width, info->image_height);
-    return ORL_OK;
+        return orl_fail(file->log, ORL_ERR_FORMAT,
+                        "%s: CMYK print colours cannot be used; save it as RGB", file->path);
+    return orl_picture_check_bytes(file, (uint64_t)info->image_width * info->image_height / MAX_PIXELS_PER_BYTE);
 }
 
-static enum orl_result decode(struct jpeg_job *job, j_decompress_ptr info, const uint8_t *data,
-                              size_t size, int channels, struct orl_image *image)
+static enum orl_result read_all(struct jpeg_job *job, j_decompress_ptr info, struct orl_picture_file *file,
+                                struct orl_image *image)
 {
     if (setjmp(job->on_error))
         return fail(job);
     jpeg_create_decompress(info);
     info->mem->max_memory_to_use = (long)MAX_MEMORY_GIB << 30;
     info->progress = &job->progress;
-    jpeg_mem_src(info, data, size);
+    jpeg_save_markers(info, JPEG_APP0 + 1, 0xffff);
+    jpeg_save_markers(info, JPEG_APP0 + 2, 0xffff);
+    jpeg_stdio_src(info, file->stream);
     jpeg_read_header(info, TRUE);
-    ORL_TRY(check_header(job, info, size));
+    ORL_TRY(take_header(info, file));
+    if (!image)
+        return ORL_OK;
+    ORL_TRY(check_header(file, info));
+    int channels = file->channels == 1 && !file->profile ? 1 : 3;
     info->out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    ORL_TRY(orl_image_init(job->log, image, (int)info->image_width, (int)info->image_height,
-                           channels, ORL_PIXEL_U8));
+    ORL_TRY(orl_image_init(job->log, image, file->info.width, file->info.height, channels, ORL_PIXEL_U8));
     jpeg_start_decompress(info);
     while (info->output_scanline < info->output_height) {
         JSAMPROW row = image->u8 +
@@ -194,13 +178,12 @@ static enum orl_result decode(struct jpeg_job *job, j_decompress_ptr info, const
     return ORL_OK;
 }
 
-enum orl_result orl_jpeg_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                                size_t size, int channels, struct orl_image *image)
+enum orl_result orl_jpeg_read(struct orl_picture_file *file, struct orl_image *image)
 {
     struct jpeg_job job = {0};
     struct jpeg_decompress_struct info = {0};
-    start_job(&job, (j_common_ptr)&info, log, path);
-    enum orl_result result = decode(&job, &info, data, size, channels, image);
+    start_job(&job, (j_common_ptr)&info, file->log, file->path);
+    enum orl_result result = read_all(&job, &info, file, image);
     jpeg_destroy_decompress(&info);
     return result;
 }

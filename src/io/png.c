@@ -17,10 +17,7 @@ struct png_job {
     const char *path;
     png_structp png;
     png_infop info;
-    const uint8_t *data; // next byte to read
-    size_t size;
-    png_bytepp rows;     // owned
-    bool wide;           // the decoded samples have 16 bits each
+    png_bytepp rows; // owned
 };
 
 static void stop(png_structp png, png_const_charp message)
@@ -36,16 +33,6 @@ static void take_warning(png_structp png, png_const_charp message)
     orl_logf(job->log, ORL_LOG_DEBUG, "%s: PNG: %s", job->path, message);
 }
 
-static void read_bytes(png_structp png, png_bytep out, size_t size)
-{
-    struct png_job *job = png_get_io_ptr(png);
-    if (size > job->size)
-        png_error(png, "the file ends too early");
-    memcpy(out, job->data, size);
-    job->data += size;
-    job->size -= size;
-}
-
 // libpng allocates, and zeroes, what a chunk's header claims before it reads the chunk: up to 2 GiB
 // for a file of some bytes.
 static png_voidp allocate(png_structp png, png_alloc_size_t size)
@@ -55,28 +42,11 @@ static png_voidp allocate(png_structp png, png_alloc_size_t size)
     return malloc(size);
 }
 
-static enum orl_result start_reading(struct png_job *job)
-{
-    job->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, stop, take_warning, NULL,
-                                        allocate, NULL);
-    job->info = job->png ? png_create_info_struct(job->png) : NULL;
-    if (!job->info)
-        return orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for a PNG reader", job->path);
-    png_set_user_limits(job->png, ORL_IMAGE_MAX_SIDE, ORL_IMAGE_MAX_SIDE);
-    return ORL_OK;
-}
-
-static void end_reading(struct png_job *job)
-{
-    png_destroy_read_struct(&job->png, &job->info, NULL);
-    free(job->rows);
-}
-
 // --- header ---
 
 // The space of the colours by their code points (PNG's third edition, ITU-T H.273), which come before
 // profile, gamma and primaries. False: the file has none.
-static bool read_code_points(const struct png_job *job, struct orl_picture_header *header,
+static bool read_code_points(const struct png_job *job, double *gamma, struct orl_primaries *space,
                              enum orl_result *result)
 {
     enum { REC709 = 1, UNSTATED = 2, REC2020 = 9, P3 = 12 }; // primaries
@@ -104,8 +74,8 @@ static bool read_code_points(const struct png_job *job, struct orl_picture_heade
         *result = orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: PNG: the space of its colours (cICP "
                            "%d, %d, %d, %d) is not read; save it as sRGB", job->path, primaries, curve,
                            code[2], code[3]);
-    header->gamma = curve == LINEAR ? 1 : 0;
-    header->primaries = primaries == P3 ? p3 : primaries == REC2020 ? rec2020 : orl_primaries_rec709;
+    *gamma = curve == LINEAR ? 1 : 0;
+    *space = primaries == P3 ? p3 : primaries == REC2020 ? rec2020 : orl_primaries_rec709;
     return true;
 }
 
@@ -128,85 +98,60 @@ static void read_primaries(const struct png_job *job, struct orl_primaries *p)
                            &p->green[0], &p->green[1], &p->blue[0], &p->blue[1]);
 }
 
-static enum orl_result read_header(struct png_job *job, FILE *stream,
-                                   struct orl_picture_header *header)
+static enum orl_result take_exif(const struct png_job *job, struct orl_picture_file *file)
 {
-    if (setjmp(png_jmpbuf(job->png)))
-        return ORL_ERR_FORMAT;
-    png_init_io(job->png, stream);
-    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "cICP", 1);
-    png_read_info(job->png, job->info);
-    png_uint_32 width = png_get_image_width(job->png, job->info);
-    png_uint_32 height = png_get_image_height(job->png, job->info);
-    ORL_TRY(orl_picture_check_size(job->log, job->path, width, height));
+    struct orl_bytes block = {0};
+    png_uint_32 size = 0;
+    png_bytep exif = NULL;
+    if (!png_get_eXIf_1(job->png, job->info, &size, &exif) || !size)
+        return ORL_OK;
+    enum orl_result result = orl_bytes_add(job->log, &block, "Exif\0", 6);
+    ORL_THEN(result, orl_bytes_add(job->log, &block, exif, size));
+    ORL_THEN(result, orl_exif_decode(job->log, job->path, (const uint8_t *)block.data, block.size, &file->exif));
+    free(block.data);
+    return result;
+}
+
+static enum orl_result take_header(const struct png_job *job, struct orl_picture_file *file)
+{
+    struct orl_primaries primaries = {0};
+    double gamma = 0;
+    png_charp name;
+    png_bytep icc = NULL;
+    int compression;
+    png_uint_32 icc_size = 0;
     enum orl_result result = ORL_OK;
-    bool by_code = read_code_points(job, header, &result);
-    ORL_TRY(result);
-    header->info = (struct orl_picture_info){.width = (int)width, .height = (int)height,
-                                             .bits = png_get_bit_depth(job->png, job->info)};
+    ORL_TRY(orl_picture_set_size(file, png_get_image_width(job->png, job->info),
+                                 png_get_image_height(job->png, job->info)));
+    file->info.bits = png_get_bit_depth(job->png, job->info);
     png_textp texts;
     int text_count = png_get_text(job->png, job->info, &texts, NULL);
     for (int i = 0; i < text_count; i++)
-        header->info.panorama |= strcmp(texts[i].key, "XML:com.adobe.xmp") == 0 &&
-                                 orl_xmp_tells_panorama(texts[i].text, strlen(texts[i].text));
-#ifdef PNG_eXIf_SUPPORTED
-    png_uint_32 size = 0;
-    png_bytep exif = NULL;
-    if (png_get_eXIf_1(job->png, job->info, &size, &exif) && size) {
-        ORL_TRY(orl_bytes_add(job->log, &header->exif, "Exif\0", 6));
-        ORL_TRY(orl_bytes_add(job->log, &header->exif, exif, size));
+        file->info.panorama |= strcmp(texts[i].key, "XML:com.adobe.xmp") == 0 &&
+                               orl_xmp_tells_panorama(texts[i].text, strlen(texts[i].text));
+    ORL_TRY(take_exif(job, file));
+    if (!read_code_points(job, &gamma, &primaries, &result)) {
+        (void)png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size);
+        gamma = gamma_of(job);
+        read_primaries(job, &primaries);
     }
-#endif
-    png_charp name;
-    png_bytep icc;
-    int compression;
-    png_uint_32 icc_size = 0;
-    if (by_code)
-        return ORL_OK;
-    if (png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size) && icc_size)
-        return orl_bytes_add(job->log, &header->icc, icc, icc_size);
-    header->gamma = gamma_of(job);
-    read_primaries(job, &header->primaries);
-    return ORL_OK;
-}
-
-enum orl_result orl_png_read_header(const struct orl_log *log, const char *path, FILE *stream,
-                                    struct orl_picture_header *header)
-{
-    struct png_job job = {.log = log, .path = path};
-    enum orl_result result = start_reading(&job);
-    ORL_THEN(result, read_header(&job, stream, header));
-    end_reading(&job);
+    orl_picture_set_profile(file, icc, icc_size, gamma, &primaries);
     return result;
 }
 
 // --- pixels ---
 
-// Deep samples have the file's depth, in the machine's byte order.
-static enum orl_result decode(struct png_job *job, size_t file_size, enum orl_png_kind kind,
-                              struct orl_image *image)
+// Samples of 16 bits become floats, 1 at white.
+static enum orl_result take_pixels(struct png_job *job, const struct orl_picture_file *file, struct orl_image *image)
 {
-    int channels = kind == ORL_PNG_RGBA ? 4 : 3;
     // Deflate compresses at most 1032 to 1 (zlib's technical notes).
     const uint64_t max_ratio = 1032;
-    if (setjmp(png_jmpbuf(job->png)))
-        return ORL_ERR_FORMAT;
-    png_set_read_fn(job->png, job, read_bytes);
-    png_read_info(job->png, job->info);
-    png_uint_32 width = png_get_image_width(job->png, job->info);
-    png_uint_32 height = png_get_image_height(job->png, job->info);
-    bool sixteen = png_get_bit_depth(job->png, job->info) == 16;
-    bool deep = kind == ORL_PNG_RGB_DEEP || (kind == ORL_PNG_RGBA && sixteen);
-    size_t pixel = (size_t)channels * (deep ? sizeof(float) : 1);
-    ORL_TRY(orl_picture_check_memory(job->log, job->path, width, height, pixel));
-    if ((uint64_t)png_get_rowbytes(job->png, job->info) * height > file_size * max_ratio)
-        return orl_fail(job->log, ORL_ERR_FORMAT, "%s: %zu bytes cannot hold %ux%u pixels",
-                        job->path, file_size, (unsigned)width, (unsigned)height);
+    bool wide = file->info.bits == 16;
+    size_t height = (size_t)file->info.height, channels = file->channels == 4 ? 4 : 3;
+    ORL_TRY(orl_picture_check_memory(file, channels * (wide ? sizeof(float) : 1)));
+    ORL_TRY(orl_picture_check_bytes(file, (uint64_t)png_get_rowbytes(job->png, job->info) * height / max_ratio));
     png_set_expand(job->png);
-    job->wide = deep && sixteen;
-    if (!deep)
-        png_set_scale_16(job->png); // rounds, unlike strip_16
-    else if (job->wide)
+    if (wide)
         png_set_swap(job->png);
     if (channels == 3)
         png_set_strip_alpha(job->png);
@@ -215,46 +160,48 @@ static enum orl_result decode(struct png_job *job, size_t file_size, enum orl_pn
     png_set_gray_to_rgb(job->png);
     png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
-    size_t row = (size_t)width * (size_t)channels * (job->wide ? 2 : 1);
+    size_t row = (size_t)file->info.width * channels * (wide ? 2 : 1);
     if (png_get_rowbytes(job->png, job->info) != row)
         png_error(job->png, "unexpected row size");
-    // With `deep` the samples go to the end of the image, where they are converted to floats
-    // in place.
-    ORL_TRY(orl_image_init(job->log, image, (int)width, (int)height, channels,
-                           deep ? ORL_PIXEL_F32 : ORL_PIXEL_U8));
+    ORL_TRY(orl_image_init(job->log, image, file->info.width, file->info.height, (int)channels,
+                           wide ? ORL_PIXEL_F32 : ORL_PIXEL_U8));
     job->rows = orl_array(job->log, height, sizeof *job->rows);
     ORL_TRY_MEMORY(job->rows);
+    // Wide samples go to the end of the image. From the front, a float overwrites only samples that were already read.
+    uint8_t *samples = image->u8 + (orl_image_bytes(image) - row * height);
     for (size_t y = 0; y < height; y++)
-        job->rows[y] = image->u8 + (orl_image_bytes(image) - row * height) + y * row;
+        job->rows[y] = samples + y * row;
     png_read_image(job->png, job->rows);
     png_read_end(job->png, NULL);
+    for (size_t i = 0; wide && i < row / 2 * height; i++) {
+        uint16_t value;
+        memcpy(&value, samples + 2 * i, sizeof value);
+        image->f32[i] = (float)value / 65535;
+    }
     return ORL_OK;
 }
 
-// Converts the samples of a deep picture to floats in place, 1 at white.
-static void to_floats(const struct png_job *job, struct orl_image *image)
+static enum orl_result read_all(struct png_job *job, struct orl_picture_file *file, struct orl_image *image)
 {
-    // From the front, a float overwrites only samples that were already read.
-    size_t count = orl_image_bytes(image) / sizeof(float);
-    size_t sample = job->wide ? 2 : 1;
-    const uint8_t *from = image->u8 + orl_image_bytes(image) - count * sample;
-    for (size_t i = 0; i < count; i++) {
-        uint16_t value = from[i];
-        if (job->wide)
-            memcpy(&value, from + 2 * i, 2);
-        image->f32[i] = (float)value / (job->wide ? 65535 : 255);
-    }
+    if (setjmp(png_jmpbuf(job->png)))
+        return ORL_ERR_FORMAT;
+    png_set_user_limits(job->png, ORL_IMAGE_MAX_SIDE, ORL_IMAGE_MAX_SIDE);
+    png_init_io(job->png, file->stream);
+    png_set_keep_unknown_chunks(job->png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "cICP", 1);
+    png_read_info(job->png, job->info);
+    ORL_TRY(take_header(job, file));
+    return image ? take_pixels(job, file, image) : ORL_OK;
 }
 
-enum orl_result orl_png_decode(const struct orl_log *log, const char *path, const uint8_t *data,
-                               size_t size, enum orl_png_kind kind, struct orl_image *image)
+enum orl_result orl_png_read(struct orl_picture_file *file, struct orl_image *image)
 {
-    struct png_job job = {.log = log, .path = path, .data = data, .size = size};
-    enum orl_result result = start_reading(&job);
-    ORL_THEN(result, decode(&job, size, kind, image));
-    end_reading(&job);
-    if (result == ORL_OK && image->type == ORL_PIXEL_F32)
-        to_floats(&job, image);
+    struct png_job job = {.log = file->log, .path = file->path};
+    job.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &job, stop, take_warning, NULL, allocate, NULL);
+    job.info = job.png ? png_create_info_struct(job.png) : NULL;
+    enum orl_result result = job.info ? read_all(&job, file, image)
+                                      : orl_fail(file->log, ORL_ERR_MEMORY, "%s: no memory for a PNG reader", file->path);
+    png_destroy_read_struct(&job.png, &job.info, NULL);
+    free(job.rows);
     return result;
 }
 

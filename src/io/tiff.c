@@ -5,11 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include <tiffio.h>
 
-#include "core/color.h"
 #include "core/memory.h"
 #include "io/internal.h"
 
@@ -17,13 +15,11 @@
 enum { MAX_RATIO = 20000 };
 
 struct tiff_job {
-    const struct orl_log *log;
-    const char *path;
+    struct orl_picture_file *file;
     TIFF *tiff;
     uint32_t width, height;
     uint16_t bits, samples, format, photometric, planar;
     bool multiplied; // by the alpha that follows the colours
-    bool encoded; // samples stay as stored, in [0, 1], to be converted by a profile
     char message[512]; // libtiff's first error
 };
 
@@ -45,13 +41,13 @@ static int take_warning(TIFF *tiff, void *priv, const char *module, const char *
     struct tiff_job *job = priv;
     char text[512];
     vsnprintf(text, sizeof text, format, args);
-    orl_logf(job->log, ORL_LOG_DEBUG, "%s: TIFF: %s", job->path, text);
+    orl_logf(job->file->log, ORL_LOG_DEBUG, "%s: TIFF: %s", job->file->path, text);
     return 1;
 }
 
 static enum orl_result fail(const struct tiff_job *job)
 {
-    return orl_fail(job->log, ORL_ERR_FORMAT, "%s: TIFF: %s", job->path,
+    return orl_fail(job->file->log, ORL_ERR_FORMAT, "%s: TIFF: %s", job->file->path,
                     *job->message ? job->message : "damaged");
 }
 
@@ -62,7 +58,7 @@ static enum orl_result open_tiff(struct tiff_job *job)
     TIFFOpenOptionsSetErrorHandlerExtR(options, take_error, job);
     TIFFOpenOptionsSetWarningHandlerExtR(options, take_warning, job);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)1 << 30);
-    job->tiff = TIFFOpenExt(job->path, "rm", options); // m: not mapped into memory
+    job->tiff = TIFFOpenExt(job->file->path, "rm", options); // m: not mapped into memory
     TIFFOpenOptionsFree(options);
     return job->tiff ? ORL_OK : fail(job);
 }
@@ -80,7 +76,7 @@ static bool is_supported(const struct tiff_job *job)
 
 static enum orl_result read_header(struct tiff_job *job)
 {
-    struct stat st;
+    struct orl_picture_file *file = job->file;
     TIFF *t = job->tiff;
     uint16_t extra_count = 0, *extra = NULL;
     TIFFGetField(t, TIFFTAG_IMAGEWIDTH, &job->width);
@@ -93,19 +89,18 @@ static enum orl_result read_header(struct tiff_job *job)
     job->multiplied = TIFFGetFieldDefaulted(t, TIFFTAG_EXTRASAMPLES, &extra_count, &extra) &&
                       extra_count && extra[0] == EXTRASAMPLE_ASSOCALPHA &&
                       job->samples > (job->photometric == PHOTOMETRIC_RGB ? 3 : 1);
-    ORL_TRY(orl_picture_check_size(job->log, job->path, job->width, job->height));
+    ORL_TRY(orl_picture_set_size(file, job->width, job->height));
     if (!is_supported(job))
-        return orl_fail(job->log, ORL_ERR_UNSUPPORTED,
+        return orl_fail(file->log, ORL_ERR_UNSUPPORTED,
                         "%s: a TIFF of %u samples of %u bits in this colour space cannot be read; "
-                        "save it as RGB with 8 or 16 bits", job->path, job->samples, job->bits);
+                        "save it as RGB with 8 or 16 bits", file->path, job->samples, job->bits);
     if (job->multiplied && job->planar == PLANARCONFIG_SEPARATE)
-        return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: a TIFF with premultiplied alpha in a plane "
-                        "of its own cannot be read; save it without alpha", job->path);
+        return orl_fail(file->log, ORL_ERR_UNSUPPORTED, "%s: a TIFF with premultiplied alpha in a plane "
+                        "of its own cannot be read; save it without alpha", file->path);
+    file->info.bits = job->bits;
+    file->info.unbounded = file->light = job->format == SAMPLEFORMAT_IEEEFP;
     uint64_t bytes = (uint64_t)job->width * job->height * job->samples * (job->bits / 8);
-    if (stat(job->path, &st) != 0 || bytes / MAX_RATIO > (uint64_t)st.st_size)
-        return orl_fail(job->log, ORL_ERR_FORMAT, "%s: too short for %ux%u pixels", job->path,
-                        job->width, job->height);
-    return ORL_OK;
+    return orl_picture_check_bytes(file, bytes / MAX_RATIO);
 }
 
 static void copy_text(TIFF *tiff, uint32_t tag, char *text, size_t size)
@@ -122,9 +117,8 @@ static double positive(TIFF *tiff, uint32_t tag)
 }
 
 // Changes the current directory from the picture to its EXIF block, so it must come last.
-static void read_exif(struct tiff_job *job, struct orl_exif *exif)
+static void read_exif(TIFF *t, struct orl_exif *exif)
 {
-    TIFF *t = job->tiff;
     uint16_t orientation = 1, iso_count = 0, focal_35 = 0, *iso = NULL;
     float bias = 0;
     toff_t offset = 0;
@@ -145,23 +139,6 @@ static void read_exif(struct tiff_job *job, struct orl_exif *exif)
         exif->focal_35mm = focal_35;
 }
 
-enum orl_result orl_tiff_inspect(const struct orl_log *log, const char *path,
-                                 struct orl_picture_info *info, struct orl_exif *exif)
-{
-    struct tiff_job job = {.log = log, .path = path};
-    enum orl_result result = open_tiff(&job);
-    ORL_THEN(result, read_header(&job));
-    if (result == ORL_OK) {
-        *info = (struct orl_picture_info){.width = (int)job.width, .height = (int)job.height,
-                                          .bits = job.bits,
-                                          .unbounded = job.format == SAMPLEFORMAT_IEEEFP};
-        read_exif(&job, exif);
-    }
-    if (job.tiff)
-        TIFFClose(job.tiff);
-    return result;
-}
-
 // --- pixels ---
 
 static float stored(const struct tiff_job *job, const uint8_t *sample)
@@ -175,12 +152,11 @@ static float stored(const struct tiff_job *job, const uint8_t *sample)
     return job->bits == 32 ? value : (float)wide / (job->bits == 16 ? 65535 : 255);
 }
 
-static float light(const struct tiff_job *job, const uint8_t *sample, float alpha)
+// What has been multiplied by alpha is divided by it.
+static float sample(const struct tiff_job *job, const uint8_t *from, float alpha)
 {
-    float value = stored(job, sample);
-    if (alpha < 1)
-        value = alpha > 0 ? fminf(value / alpha, 1) : 0;
-    return job->bits == 32 || job->encoded ? value : orl_srgb_decode(value);
+    float value = stored(job, from);
+    return alpha >= 1 ? value : alpha > 0 ? fminf(value / alpha, 1) : 0;
 }
 
 // Copies `count` pixels from a buffer into a row of the image. plane -1: samples are interleaved.
@@ -192,12 +168,12 @@ static void take_pixels(const struct tiff_job *job, const uint8_t *from, size_t 
     for (size_t i = 0; i < count; i++, from += step) {
         float alpha = job->multiplied ? stored(job, from + (gray ? 1 : 3) * bytes) : 1;
         if (gray && plane <= 0)
-            rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = light(job, from, alpha);
+            rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = sample(job, from, alpha);
         else if (!gray && plane < 0)
             for (size_t c = 0; c < 3; c++)
-                rgb[3 * i + c] = light(job, from + c * bytes, alpha);
+                rgb[3 * i + c] = sample(job, from + c * bytes, alpha);
         else if (!gray && plane < 3)
-            rgb[3 * i + (size_t)plane] = light(job, from, alpha);
+            rgb[3 * i + (size_t)plane] = sample(job, from, alpha);
     }
 }
 
@@ -214,7 +190,7 @@ static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
     uint64_t pitch = (uint64_t)width * (job->bits / 8) * (separate ? 1 : job->samples);
     if (!width || !height || size <= 0 || (uint64_t)size / height < pitch || size > 1 << 30)
         return fail(job);
-    uint8_t *tile = orl_array(job->log, (size_t)size, 1);
+    uint8_t *tile = orl_array(job->file->log, (size_t)size, 1);
     ORL_TRY_MEMORY(tile);
     enum orl_result result = ORL_OK;
     for (uint16_t plane = 0; plane < (separate ? job->samples : 1); plane++)
@@ -233,34 +209,30 @@ static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
     return result;
 }
 
-// The colour profile of a file of integer RGB samples; NULL when there is none. Converters of RAW
-// files often write a wider colour space than sRGB.
-static const void *find_profile(const struct tiff_job *job, uint32_t *size)
+// The colour profile of a file of integer RGB samples. Converters of RAW files often write a wider colour space than
+// sRGB.
+static void read_profile(const struct tiff_job *job)
 {
-    const void *profile = NULL;
+    const void *icc = NULL;
+    uint32_t size = 0;
     bool rgb = job->photometric == PHOTOMETRIC_RGB && job->format == SAMPLEFORMAT_UINT;
-    return rgb && TIFFGetField(job->tiff, TIFFTAG_ICCPROFILE, size, &profile) && *size ? profile
-                                                                                      : NULL;
+    if (rgb && TIFFGetField(job->tiff, TIFFTAG_ICCPROFILE, &size, &icc) && size)
+        job->file->profile = orl_profile_create(job->file->log, job->file->path, icc, size);
 }
 
-enum orl_result orl_tiff_decode_linear(const struct orl_log *log, const char *path,
-                                       struct orl_image *image)
+enum orl_result orl_tiff_read(struct orl_picture_file *file, struct orl_image *image)
 {
-    struct tiff_job job = {.log = log, .path = path};
-    struct orl_profile *profile = NULL;
-    uint32_t size = 0;
+    struct tiff_job job = {.file = file};
     enum orl_result result = open_tiff(&job);
     ORL_THEN(result, read_header(&job));
-    const void *icc = result == ORL_OK ? find_profile(&job, &size) : NULL;
-    if (icc)
-        profile = orl_profile_create(log, path, icc, size);
-    job.encoded = profile != NULL;
-    ORL_THEN(result, orl_picture_check_memory(log, path, job.width, job.height, 3 * sizeof(float)));
-    ORL_THEN(result, orl_image_init(log, image, (int)job.width, (int)job.height, 3, ORL_PIXEL_F32));
-    ORL_THEN(result, read_tiles(&job, image));
-    if (result == ORL_OK && profile)
-        orl_profile_to_linear(profile, image);
-    orl_profile_destroy(&profile);
+    if (result == ORL_OK && image) {
+        read_profile(&job);
+        result = orl_picture_check_memory(file, 3 * sizeof(float));
+        ORL_THEN(result, orl_image_init(file->log, image, file->info.width, file->info.height, 3, ORL_PIXEL_F32));
+        ORL_THEN(result, read_tiles(&job, image));
+    } else if (result == ORL_OK) {
+        read_exif(job.tiff, &file->exif);
+    }
     if (job.tiff)
         TIFFClose(job.tiff);
     return result;
