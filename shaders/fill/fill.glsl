@@ -4,20 +4,9 @@
 #ifdef FAR
 #include "fill/slope.glsl"
 #else
-vec4 slope_moved(vec4 value, vec2 by)
-{
-    return value;
-}
-
-vec4 slope_soft(vec4 value)
-{
-    return value;
-}
-
-vec4 slope_hard(vec4 value)
-{
-    return value;
-}
+#define slope_moved(value, by) value
+#define slope_soft(value) value
+#define slope_hard(value) value
 #endif
 
 // Bilinear values for the 2x2 finer pixels of a pixel, as in the push of Gortler 1996. All four

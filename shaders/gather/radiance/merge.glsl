@@ -29,28 +29,6 @@ Sample samples[ORL_RADIANCE_KEPT];
 float weights[ORL_RADIANCE_KEPT]; // 0: no sample
 #define EACH_SAMPLE(k) for (int k = 0; k < ORL_RADIANCE_KEPT; k++)
 
-// Replaces the sample of least weight, if the new one has more.
-void put(Sample s, float weight)
-{
-    int least = -1;
-    float lightest = weight;
-    EACH_SAMPLE(k) {
-        bool lighter = weights[k] < lightest;
-        lightest = lighter ? weights[k] : lightest;
-        least = lighter ? k : least;
-    }
-    EACH_SAMPLE(k) {
-        bool here = k == least;
-        samples[k].color = here ? s.color : samples[k].color;
-        samples[k].clip = here ? s.clip : samples[k].clip;
-        samples[k].weight = here ? s.weight : samples[k].weight;
-        samples[k].pixel = here ? s.pixel : samples[k].pixel;
-        samples[k].mip = here ? s.mip : samples[k].mip;
-        samples[k].source = here ? s.source : samples[k].source;
-        weights[k] = here ? weight : weights[k];
-    }
-}
-
 // --- photographs that a pixel asks: those of the tile and, if their weights are small, all others,
 // for a small surface that no probe point of the tile met ---
 
@@ -90,6 +68,28 @@ int photo_next(int before)
         i = other < photo_count ? other : -1;
     }
     return i;
+}
+
+Sample either(bool first, Sample a, Sample b)
+{
+    return Sample(first ? a.color : b.color, first ? a.clip : b.clip, first ? a.weight : b.weight,
+                  first ? a.pixel : b.pixel, first ? a.mip : b.mip, first ? a.source : b.source);
+}
+
+// Replaces the sample of least weight, if the new one has more.
+void put(Sample s, float weight)
+{
+    int least = -1;
+    float lightest = weight;
+    EACH_SAMPLE(k) {
+        bool lighter = weights[k] < lightest;
+        lightest = lighter ? weights[k] : lightest;
+        least = lighter ? k : least;
+    }
+    EACH_SAMPLE(k) {
+        samples[k] = either(k == least, s, samples[k]);
+        weights[k] = k == least ? weight : weights[k];
+    }
 }
 
 void combine_add(photo source, Answer a)
@@ -140,15 +140,8 @@ float left_out()
 Sample sample_at(int one)
 {
     Sample s = samples[0];
-    EACH_SAMPLE(k) {
-        bool here = k == one;
-        s.color = here ? samples[k].color : s.color;
-        s.clip = here ? samples[k].clip : s.clip;
-        s.weight = here ? samples[k].weight : s.weight;
-        s.pixel = here ? samples[k].pixel : s.pixel;
-        s.mip = here ? samples[k].mip : s.mip;
-        s.source = here ? samples[k].source : s.source;
-    }
+    EACH_SAMPLE(k)
+        s = either(k == one, samples[k], s);
     return s;
 }
 

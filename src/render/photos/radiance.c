@@ -1,11 +1,9 @@
 #include "oriel/radiance.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/color.h"
-#include "core/memory.h"
 
 // --- confidence; shaders/gather/radiance/trust.glsl has the same noise model ---
 
@@ -113,18 +111,12 @@ enum orl_result orl_radiance_decode(const struct orl_log *log,
 {
     memset(out, 0, sizeof *out);
     ORL_REQUIRE(log, image->channels == 3);
-    struct decoder *d = orl_array(log, 1, sizeof *d);
-    enum orl_result result = d ? orl_image_init(log, out, image->width, image->height, 4,
-                                                ORL_PIXEL_F32)
-                               : ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        init_decoder(response, image, d);
-        *white = d->white;
-        for (int y = 0; y < image->height; y++)
-            for (int x = 0; x < image->width; x++)
-                decode_pixel(d, image, x, y,
-                             out->f32 + 4 * ((size_t)y * (size_t)image->width + (size_t)x));
-    }
-    free(d);
-    return result;
+    struct decoder d;
+    ORL_TRY(orl_image_init(log, out, image->width, image->height, 4, ORL_PIXEL_F32));
+    init_decoder(response, image, &d);
+    *white = d.white;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            decode_pixel(&d, image, x, y, out->f32 + 4 * ((size_t)y * (size_t)image->width + (size_t)x));
+    return ORL_OK;
 }
