@@ -117,11 +117,8 @@ static enum orl_result dispatch_bands(struct orl_synth *synth,
         params->size[3] = row + rows;
         orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
             .prog = orl_prog_get(synth->gpu, "synth/frame.comp", NULL, variant_of(synth)),
-            .params = params, .params_size = sizeof *params,
-            .images = {{synth->start, 0, GL_READ_ONLY}, {synth->radiance, 0, GL_WRITE_ONLY},
-                       {synth->truth, 0, GL_WRITE_ONLY}},
-            .groups = {orl_groups((size_t)synth->params.width, TILE), orl_groups((size_t)rows, TILE)},
-            .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
+            ORL_PARAMS(*params), .images = {synth->start, synth->radiance, synth->truth},
+            .size = {synth->params.width, rows}});
         ORL_TRY(orl_gpu_finish(synth->gpu));
     }
     return ORL_OK;
@@ -173,11 +170,8 @@ enum orl_result orl_synth_draw(struct orl_synth *synth, const struct orl_progres
     struct frame_params params = params_of(synth, view);
     orl_gpu_dispatch(synth->gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(synth->gpu, "synth/cone.comp", NULL, variant_of(synth)),
-        .params = &params, .params_size = sizeof params,
-        .images = {{synth->start, 0, GL_WRITE_ONLY}},
-        .groups = {orl_groups((size_t)synth->params.width, TILE * TILE),
-                   orl_groups((size_t)synth->params.height, TILE * TILE)},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
+        ORL_PARAMS(params), .images = {synth->start},
+        .size = {synth->start->params.width, synth->start->params.height}});
     enum orl_result result = dispatch_bands(synth, progress, &params);
     ORL_THEN(result, read_frame(synth, frame));
     if (result != ORL_OK)

@@ -64,25 +64,7 @@ struct orl_gpu_memory {
 };
 size_t orl_gpu_memory(const struct orl_gpu *gpu, struct orl_gpu_memory *rows, size_t capacity);
 
-// --- buffers ---
-
-struct orl_buf {
-    GLuint id;
-    size_t size;
-    enum orl_owner owner;
-    const char *tag; // string literal, for GL labels and messages
-};
-// data may be NULL: zeroed.
-enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
-                               size_t size, const void *data, struct orl_buf **out) ORL_CHECK_RESULT;
-void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **buf);
-void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data);
-// Reads the first `size` bytes. Waits for the device.
-void orl_buf_read(const struct orl_buf *buf, size_t size, void *data);
-// Sets every 32-bit word to `word`.
-void orl_buf_fill(struct orl_buf *buf, uint32_t word);
-
-// --- textures ---
+// --- buffers and textures ---
 
 struct orl_tex_params {
     int width, height;
@@ -98,6 +80,29 @@ struct orl_tex {
     struct orl_tex_params params;
     size_t bytes;
 };
+struct orl_buf {
+    GLuint id;
+    size_t size;
+    enum orl_owner owner;
+    const char *tag; // string literal, for GL labels and messages
+    struct orl_tex texels; // the buffer as a texture or image; id 0: none was asked for
+};
+// data may be NULL: zeroed. format: of texels as which programs read the buffer, such as GL_RGBA32F, at most
+// caps->max_buffer_texels; 0: none. Reads of texels give the same as storage reads, but are several times cheaper on
+// software renderers.
+enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, size_t size,
+                               const void *data, GLenum format, struct orl_buf **out) ORL_CHECK_RESULT;
+// Keeps *buf, which may be NULL, if it has room for `size` bytes; else a new one takes its place, which has more room
+// than that if the old one was too small.
+enum orl_result orl_buf_fit(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, size_t size, GLenum format,
+                            struct orl_buf **buf) ORL_CHECK_RESULT;
+void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **buf);
+void orl_buf_write(struct orl_buf *buf, size_t offset, size_t size, const void *data);
+// Reads the first `size` bytes. Waits for the device.
+void orl_buf_read(const struct orl_buf *buf, size_t size, void *data);
+// Sets every 32-bit word to `word`.
+void orl_buf_fill(struct orl_buf *buf, uint32_t word);
+
 // Creates a texture filled with zeros. Texture coordinates clamp to the edge.
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out) ORL_CHECK_RESULT;
@@ -141,12 +146,6 @@ enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex
 void orl_tex_clear(struct orl_tex *tex);
 // Sets every texel of level 0 of a GL_R32UI texture to `word`.
 void orl_tex_fill(struct orl_tex *tex, uint32_t word);
-// A view of a buffer as texels of `format` (GL_RGBA32F, GL_RG32UI, ...), to be bound as an image.
-// Reads give the same as storage reads, but are several times cheaper on software renderers. The
-// view has no memory of its own; the buffer must outlive it and hold at most
-// caps->max_buffer_texels texels.
-enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
-                                    struct orl_tex **out) ORL_CHECK_RESULT;
 // Fills the coarser levels of one layer (0 without layers) from its level 0, which shaders may have
 // written. GL_RGBA8 counts as sRGB, whose means are those of light. Samplers see all levels from then on.
 void orl_tex_make_mipmaps(struct orl_tex *tex, int layer);
@@ -173,31 +172,25 @@ struct orl_prog *orl_prog_get_raster(struct orl_gpu *gpu, const char *vertex_fil
                                      const char *fragment_file, const char *defines);
 // True if the compiled program reads or writes the image or buffer of this name.
 bool orl_prog_reads(const struct orl_prog *prog, const char *name);
-// Number of programs that were taken from the cache of earlier runs.
-size_t orl_gpu_cached_programs(const struct orl_gpu *gpu);
 // The `index`-th shader file below `folder`, in order of names; NULL past the end. The string is
 // static.
 const char *orl_shader_file(const char *folder, size_t index);
 
 enum { ORL_BINDINGS_MAX = 8 };
-struct orl_image_binding {
-    const struct orl_tex *tex; // NULL: not bound
-    int level;
-    GLenum access;             // GL_READ_ONLY, GL_WRITE_ONLY or GL_READ_WRITE
-};
-// One compute dispatch; array index = binding point of its kind.
+// One compute dispatch; array index = binding point of its kind, NULL: not bound.
 struct orl_dispatch {
     struct orl_prog *prog;
     const void *params;        // contents of the std140 block at uniform binding 0
     size_t params_size;        // its bytes, at least the size of the program's block
-    const struct orl_buf *bufs[ORL_BINDINGS_MAX]; // NULL: not bound
+    const struct orl_buf *bufs[ORL_BINDINGS_MAX];
     const struct orl_tex *textures[ORL_BINDINGS_MAX];
-    struct orl_image_binding images[ORL_BINDINGS_MAX];
-    int image_layers[ORL_BINDINGS_MAX]; // of arrays: 0: all layers; n: layer n - 1 only
-    unsigned groups[3];        // work groups; 0 counts as 1
-    const struct orl_buf *indirect; // NULL, or a buffer whose first three words are the groups
-    GLbitfield barrier;        // glMemoryBarrier bits, applied after the dispatch
+    const struct orl_tex *images[ORL_BINDINGS_MAX]; // level 0; the shader says what it reads and what it writes
+    int layer;                 // of the arrays among the images
+    int size[2];               // invocations, rounded up to whole work groups; 0 counts as 1
+    const struct orl_buf *indirect; // NULL, or a buffer whose first three words are the work groups
 };
+#define ORL_PARAMS(block) .params = &(block), .params_size = sizeof(block)
+// What the program writes, later dispatches, draws and the functions above read.
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *dispatch);
 static inline unsigned orl_groups(size_t items, unsigned group_size)
 {

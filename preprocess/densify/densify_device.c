@@ -317,18 +317,11 @@ static enum orl_result run(const struct densify_device *device, const struct den
         int end = row + band < height ? row + band : height;
         level->block.area[2] = row;
         level->block.area[3] = end;
-        struct orl_dispatch dispatch = {
-            .prog = prog,
-            .params = &level->block,
-            .params_size = sizeof level->block,
+        orl_gpu_dispatch(device->gpu, &(struct orl_dispatch){
+            .prog = prog, ORL_PARAMS(level->block),
             .textures = {level->reference, level->sources, level->source_depths},
-            .images = {{level->planes, 0, GL_READ_WRITE}, {level->costs, 0, GL_READ_WRITE},
-                       {level->view_costs, 0, GL_READ_WRITE}, {extra, 0, GL_READ_WRITE}},
-            .groups = {orl_groups((size_t)(half ? (width + 1) / 2 : width), ORL_PIXEL_GROUP_X),
-                       orl_groups((size_t)(end - row), ORL_PIXEL_GROUP_Y)},
-            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT,
-        };
-        orl_gpu_dispatch(device->gpu, &dispatch);
+            .images = {level->planes, level->costs, level->view_costs, extra},
+            .size = {half ? (width + 1) / 2 : width, end - row}});
         result = orl_gpu_finish(device->gpu);
     }
     orl_progress_report(job->progress, "densify", job->done + done, job->total, job->name);

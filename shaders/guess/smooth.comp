@@ -5,7 +5,7 @@
 #include "guess/cells.glsl"
 #include "guess/path.glsl"
 
-layout(local_size_x = GUESS_LINES) in;
+layout(local_size_x = 32) in;
 layout(std430, binding = 3) readonly buffer plane_costs {
     float costs[];
 };

@@ -2,7 +2,7 @@
 #define BLOCK_CARVE
 #include "shared/hull_blocks.h"
 
-layout(local_size_x = CARVE_GROUP) in;
+layout(local_size_x = 128) in;
 layout(std430, binding = 0) buffer Field {
     float field[]; // distance to the hull's surface, negative inside, scene units
 };

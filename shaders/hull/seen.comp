@@ -2,7 +2,7 @@
 #define BLOCK_SEEN
 #include "shared/hull_blocks.h"
 
-layout(local_size_x = SEEN_GROUP) in;
+layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Centres {
     float centres[]; // three for each voxel, world
 };

@@ -4,10 +4,6 @@
 
 #include "shared/interop.h"
 
-// Work group sizes.
-#define CARVE_GROUP 128
-#define SEEN_GROUP 64
-
 // One camera's partial hull.
 #if defined(__STDC_VERSION__) || defined(BLOCK_CARVE)
 ORL_BLOCK(carve_block)

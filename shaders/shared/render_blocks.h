@@ -120,8 +120,6 @@ ORL_BLOCK(gather_block)
 #define ORL_PHOTO_SOFT 4
 #define ORL_BICUBIC 1 // value of opt.sampling
 
-// Estimated depth from photographs: lines of cells of a work group.
-#define GUESS_LINES 32
 #define NOT_SEEN 1e30  // penalty of a photograph that cannot paint a pixel
 
 // A photograph's depth map: estimates in its holes, or fat outlines; and what stands before the scene.

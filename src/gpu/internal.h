@@ -23,7 +23,6 @@ struct orl_gpu {
     struct orl_gpu_caps caps;
     char *shader_dir; // owned; NULL: embedded shaders
     char program_cache[ORL_PATH_SIZE]; // folder; "": no cache
-    size_t cached_progs; // programs taken from the cache
     bool failed;      // sticky: a GL error or a high-severity message
     bool lost;        // for good: the device was reset
     bool current;     // the context could be made current
@@ -71,10 +70,10 @@ void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *so
 
 // program.c: makes the program current with these parameters. False, a sticky failure, on error.
 bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params, size_t size);
-// Binds textures and images, ORL_BINDINGS_MAX of each, as orl_dispatch has them. image_layers may
-// be NULL.
-void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
-                  const int *image_layers);
+// Binds textures and images, ORL_BINDINGS_MAX of each, as orl_dispatch has them.
+void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_tex *const *images, int layer);
+// Makes what a program has written there for the next ones. What the host asks for has barriers of its own.
+void orl_gpu_barrier(void);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
 
 // Logs every pending GL error as caused by `where`. True if there was none.

@@ -12,6 +12,7 @@ struct orl_prog {
     GLuint id;         // 0: it does not compile, which was logged once
     GLuint params_buf; // created by the first dispatch
     size_t params_size; // size of the program's block at binding 0; 0: no block
+    GLint group[3];     // invocations of a work group; of compute programs
 };
 
 // The shader files of a program's stages: of compute programs files[1] is NULL.
@@ -97,6 +98,8 @@ static bool make(struct orl_gpu *gpu, const char *const files[STAGES], const str
     if (ok) {
         glObjectLabel(GL_PROGRAM, prog->id, -1, files[0]);
         prog->params_size = find_params_size(prog->id);
+        if (!files[1])
+            glGetProgramiv(prog->id, GL_COMPUTE_WORK_GROUP_SIZE, prog->group);
         orl_logf(gpu->log, ORL_LOG_DEBUG, "shaders/%s %s in %.0f ms", files[0],
                  cached ? "loaded" : "compiled", 1e3 * (orl_time_s() - start));
     } else {
@@ -163,11 +166,6 @@ bool orl_prog_reads(const struct orl_prog *prog, const char *name)
            glGetProgramResourceIndex(prog->id, GL_UNIFORM, name) != GL_INVALID_INDEX;
 }
 
-size_t orl_gpu_cached_programs(const struct orl_gpu *gpu)
-{
-    return gpu->cached_progs;
-}
-
 void orl_gpu_free_programs(struct orl_gpu *gpu)
 {
     for (size_t i = 0; i < gpu->prog_count; i++) {
@@ -207,20 +205,25 @@ bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params
     return true;
 }
 
-void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_image_binding *images,
-                  const int *image_layers)
+void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_tex *const *images, int layer)
 {
     for (GLuint i = 0; i < ORL_BINDINGS_MAX; i++) {
-        const struct orl_image_binding *image = &images[i];
-        int layer = image_layers ? image_layers[i] : 0;
         if (textures[i])
             glBindTextureUnit(i, textures[i]->id);
-        if (image->tex)
-            glBindImageTexture(i, image->tex->id, image->level,
-                               image->tex->params.layers > 0 && layer == 0,
-                               layer > 0 ? layer - 1 : 0, image->access,
-                               image->tex->params.format);
+        if (images[i])
+            glBindImageTexture(i, images[i]->id, 0, GL_FALSE, layer, GL_READ_WRITE, images[i]->params.format);
     }
+}
+
+void orl_gpu_barrier(void)
+{
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_TEXTURE_FETCH_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+static GLuint groups(int size, GLint group)
+{
+    return size > 0 ? orl_groups((size_t)size, (unsigned)group) : 1;
 }
 
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
@@ -230,16 +233,14 @@ void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *d)
     for (GLuint i = 0; i < ORL_BINDINGS_MAX; i++)
         if (d->bufs[i])
             glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, d->bufs[i]->id);
-    orl_gpu_bind(d->textures, d->images, d->image_layers);
+    orl_gpu_bind(d->textures, d->images, d->layer);
     if (d->indirect) {
         glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, d->indirect->id);
         glDispatchComputeIndirect(0);
     } else {
-        glDispatchCompute(d->groups[0] ? d->groups[0] : 1, d->groups[1] ? d->groups[1] : 1,
-                          d->groups[2] ? d->groups[2] : 1);
+        glDispatchCompute(groups(d->size[0], d->prog->group[0]), groups(d->size[1], d->prog->group[1]), 1);
     }
-    if (d->barrier)
-        glMemoryBarrier(d->barrier);
+    orl_gpu_barrier();
     char file[96]; // that the key begins with
     snprintf(file, sizeof file, "%.*s", (int)strcspn(d->prog->key, "\n"), d->prog->key);
     orl_gpu_check_errors(gpu, file);

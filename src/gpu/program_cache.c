@@ -76,16 +76,12 @@ static const char *entry_path(const struct orl_gpu *gpu, const struct shader_sou
                               char path[ORL_PATH_SIZE])
 {
     const struct orl_gpu_caps *caps = &gpu->caps;
-    const char *const parts[] = {source->text.data, caps->vendor, caps->renderer, caps->version,
-                                 ORL_VERSION};
-    XXH3_state_t *state = XXH3_createState();
-    if (!state)
+    char *all = orl_format(NULL, "%s\n%s\n%s\n%s\n%s", caps->vendor, caps->renderer, caps->version, ORL_VERSION,
+                           source->text.data);
+    if (!all)
         return NULL;
-    XXH3_128bits_reset(state);
-    for (size_t i = 0; i < ORL_COUNT(parts); i++)
-        XXH3_128bits_update(state, parts[i], strlen(parts[i]) + 1); // with the terminating 0
-    XXH128_hash_t hash = XXH3_128bits_digest(state);
-    XXH3_freeState(state);
+    XXH128_hash_t hash = XXH3_128bits(all, strlen(all));
+    free(all);
     return orl_path_print(path, gpu->program_cache, "programs/%016llx%016llx",
                           (unsigned long long)hash.high64, (unsigned long long)hash.low64);
 }
@@ -131,7 +127,6 @@ bool orl_program_cache_load(struct orl_gpu *gpu, const struct shader_source *sou
     bool hit = *gpu->program_cache && entry_path(gpu, source, path) && orl_path_is_file(path) &&
                orl_file_read(NULL, path, BINARY_MAX_BYTES, &data, &size) == ORL_OK &&
                load_binary(data, size, program);
-    gpu->cached_progs += hit;
     free(data);
     return hit;
 }

@@ -80,7 +80,7 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     if (r->depth)
         glEnable(GL_DEPTH_TEST);
     bind_inputs(gpu->vertex_array, r);
-    orl_gpu_bind(r->textures, r->images, NULL);
+    orl_gpu_bind(r->textures, r->images, 0);
     glBindVertexArray(gpu->vertex_array);
     GLsizei count = (GLsizei)r->count, instances = r->instances ? (GLsizei)r->instances : 1;
     if (r->indices)
@@ -91,7 +91,6 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    if (r->barrier)
-        glMemoryBarrier(r->barrier);
+    orl_gpu_barrier();
     orl_gpu_check_errors(gpu, "raster");
 }

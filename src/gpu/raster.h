@@ -28,12 +28,11 @@ struct orl_raster {
     size_t instances;              // how often they are drawn; 0 counts as 1
     bool over;                     // blends, see above
     const struct orl_tex *textures[ORL_BINDINGS_MAX];     // what both programs read, by binding
-    struct orl_image_binding images[ORL_BINDINGS_MAX];
+    const struct orl_tex *images[ORL_BINDINGS_MAX];
     const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by output location
     const struct orl_tex *depth;   // GL_DEPTH_COMPONENT32F; NULL: no depth test
-    GLbitfield barrier;            // glMemoryBarrier bits, applied after the draw
 };
-// Errors are sticky, as those of orl_gpu_dispatch.
+// Errors are sticky, as those of orl_gpu_dispatch, and likewise what it writes is there for what follows.
 void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *raster);
 
 #endif

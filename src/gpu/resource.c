@@ -5,8 +5,20 @@
 #include "gpu/compress.h"
 #include "gpu/internal.h"
 
-enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag,
-                               size_t size, const void *data, struct orl_buf **out)
+// Makes buf->texels. False: the device has no such view, which the caller says.
+static bool view_texels(struct orl_gpu *gpu, struct orl_buf *buf, GLenum format)
+{
+    size_t texels = buf->size / orl_texel_format(format)->bytes;
+    buf->texels.params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1, .format = format,
+                                                 .owner = buf->owner, .tag = buf->tag};
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &buf->texels.id);
+    glTextureBuffer(buf->texels.id, format, buf->id);
+    glObjectLabel(GL_TEXTURE, buf->texels.id, -1, buf->tag);
+    return texels <= (size_t)gpu->caps.max_buffer_texels;
+}
+
+enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, size_t size,
+                               const void *data, GLenum format, struct orl_buf **out)
 {
     *out = NULL;
     struct orl_buf *buf = orl_array(gpu->log, 1, sizeof *buf);
@@ -16,8 +28,10 @@ enum orl_result orl_buf_create(struct orl_gpu *gpu, enum orl_owner owner, const 
     glNamedBufferStorage(buf->id, (GLsizeiptr)buf->size, size ? data : NULL, 0);
     glObjectLabel(GL_BUFFER, buf->id, -1, tag);
     orl_gpu_count(gpu, owner, tag, (ptrdiff_t)buf->size, 1);
-    if (!orl_gpu_check_errors(gpu, tag)) {
-        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device", tag, size);
+    bool fits = !format || view_texels(gpu, buf, format);
+    if (!orl_gpu_check_errors(gpu, tag) || !fits) {
+        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no buffer of %zu bytes on the device%s", tag, size,
+                 fits ? "" : " may have so many texels");
         orl_buf_destroy(gpu, &buf);
         return ORL_ERR_GPU;
     }
@@ -32,10 +46,23 @@ void orl_buf_destroy(struct orl_gpu *gpu, struct orl_buf **handle)
     struct orl_buf *buf = *handle;
     if (!buf)
         return;
+    glDeleteTextures(1, &buf->texels.id);
     glDeleteBuffers(1, &buf->id);
     orl_gpu_count(gpu, buf->owner, buf->tag, -(ptrdiff_t)buf->size, -1);
     free(buf);
     *handle = NULL;
+}
+
+enum orl_result orl_buf_fit(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, size_t size, GLenum format,
+                            struct orl_buf **buf)
+{
+    size_t more = (size + size / 2 + 15) / 16 * 16; // what has grown once will grow again
+    if (*buf && (*buf)->size >= size)
+        return ORL_OK;
+    if (*buf && more <= gpu->caps.max_storage_block)
+        size = more;
+    orl_buf_destroy(gpu, buf);
+    return orl_buf_create(gpu, owner, tag, size, NULL, format, buf);
 }
 
 // Drivers write at once, or into new memory, where they believe that no command uses the buffer: NVIDIA's 580 does while
@@ -202,6 +229,7 @@ void orl_tex_destroy(struct orl_gpu *gpu, struct orl_tex **handle)
 void orl_tex_write_layer(struct orl_tex *tex, int layer, int width, int height, GLenum format, GLenum type,
                          const void *pixels)
 {
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
     if (tex->params.layers)
         glTextureSubImage3D(tex->id, 0, 0, 0, layer, width, height, 1, format, type, pixels);
     else
@@ -233,30 +261,6 @@ void orl_tex_fill(struct orl_tex *tex, uint32_t word)
 {
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
     glClearTexImage(tex->id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
-}
-
-enum orl_result orl_tex_view_buffer(struct orl_gpu *gpu, const struct orl_buf *buf, GLenum format,
-                                    struct orl_tex **out)
-{
-    *out = NULL;
-    struct orl_tex *tex = orl_array(gpu->log, 1, sizeof *tex);
-    ORL_TRY_MEMORY(tex);
-    size_t texels = buf->size / orl_texel_format(format)->bytes;
-    tex->params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1,
-                                          .format = format, .owner = buf->owner,
-                                          .tag = buf->tag};
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &tex->id);
-    glTextureBuffer(tex->id, format, buf->id);
-    glObjectLabel(GL_TEXTURE, tex->id, -1, buf->tag);
-    orl_gpu_count(gpu, buf->owner, buf->tag, 0, 1);
-    if (!orl_gpu_check_errors(gpu, buf->tag) || texels > (size_t)gpu->caps.max_buffer_texels) {
-        orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no view of %zu texels on the device", buf->tag,
-                 texels);
-        orl_tex_destroy(gpu, &tex);
-        return ORL_ERR_GPU;
-    }
-    *out = tex;
-    return ORL_OK;
 }
 
 void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int height,

@@ -11,7 +11,7 @@ static bool fills(const struct frame *frame)
 
 static bool softens(const struct frame *frame)
 {
-    return (frame->finishes || frame->radiance) && orl_frame_guesses(frame) &&
+    return (frame->finishes || frame->radiance) && orl_params_guess(frame->params) &&
            frame->params->guess_blur > 0;
 }
 
@@ -29,16 +29,11 @@ static enum orl_result compose(const struct frame *frame)
         .fills = fills(frame),
         .layers = frame->params->paint->layers,
     };
-    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines),
-                             .params = &block, .params_size = sizeof block,
+    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, "fill/compose.comp", NULL, defines), ORL_PARAMS(block),
                              .textures = {frame->paint->fill.guesses},
-                             .images = {{frame->paint->fill.level[0], 0, GL_READ_ONLY},
-                                        {frame->picture, 0, GL_READ_WRITE},
-                                        {frame->surface.depth, 0, GL_READ_ONLY},
-                                        {frame->paint->trusted, 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_fill_groups(frame->surface.width, frame->surface.height, d.groups);
+                             .images = {frame->paint->fill.level[0], frame->picture, frame->surface.depth,
+                                        frame->paint->trusted}};
+    orl_fill_size(frame->surface.width, frame->surface.height, d.size);
     orl_gpu_dispatch(frame->gpu, &d);
     return ORL_OK;
 }
@@ -53,14 +48,10 @@ static enum orl_result median(const struct frame *frame)
 {
     bool holes = frame->params->median == ORL_MEDIAN_HOLES;
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height}};
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(frame->gpu, "fill/median.comp", NULL, holes ? "HOLES" : NULL),
-        .params = &block, .params_size = sizeof block,
-        .images = {{frame->picture, 0, GL_READ_ONLY}, {frame->paint->states[0], 0, GL_WRITE_ONLY},
-                   {frame->surface.depth, 0, GL_READ_ONLY}},
-        .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "fill/median.comp", NULL, holes ? "HOLES" : NULL), ORL_PARAMS(block),
+        .images = {frame->picture, frame->paint->states[0], frame->surface.depth},
+        .size = {frame->surface.width, frame->surface.height}});
     orl_tex_copy_layer(frame->paint->states[0], 0, frame->surface.width, frame->surface.height,
                        frame->picture, 0);
     return ORL_OK;

@@ -9,11 +9,6 @@
 
 // --- choices that go together ---
 
-static bool guesses(const struct orl_render_params *params)
-{
-    return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
-}
-
 enum orl_result orl_render_params_check(const struct orl_log *log,
                                         const struct orl_render_params *params)
 {
@@ -25,7 +20,7 @@ enum orl_result orl_render_params_check(const struct orl_log *log,
     if (painter == &orl_paint_points && !params->proxy->color)
         return orl_fail(log, ORL_ERR_ARGUMENT, "paint=points: proxy=%s has no colours",
                         params->proxy->name);
-    if (guesses(params) &&
+    if (orl_params_guess(params) &&
         (strcmp(params->weight, "normal") == 0 || strcmp(params->weight, "princ") == 0))
         return orl_fail(log, ORL_ERR_ARGUMENT, "fill=depth and fill=ground do not go with weight=%s, "
                         "which needs a normal: guessed depth has none", params->weight);

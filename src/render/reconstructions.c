@@ -40,11 +40,7 @@ void orl_reconstruction_add(const struct frame *frame, struct orl_tex *mean, int
     const char *defines = frame->finishes ? "FINISHED" : NULL;
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
                                 .pictures = {index, count}};
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(frame->gpu, "fill/mean.comp", NULL, defines),
-        .params = &block, .params_size = sizeof block,
-        .images = {{frame->picture, 0, GL_READ_WRITE}, {mean, 0, GL_READ_WRITE}},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
-    orl_gpu_pass(frame->gpu, "mean", &d);
+    orl_gpu_pass(frame->gpu, "mean", &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "fill/mean.comp", NULL, defines), ORL_PARAMS(block),
+        .images = {frame->picture, mean}, .size = {frame->surface.width, frame->surface.height}});
 }

@@ -5,13 +5,13 @@
 #include "core/memory.h"
 #include "render/frame/method.h"
 #include "render/hull/prefetch.h"
-#include "render/hull/voxel_proxy.h"
 #include "render/internal.h"
 #include "render/paint/paint.h"
 #include "render/papers/room.h"
 #include "render/photos/photos.h"
 #include "render/photos/progressive.h"
 #include "render/proxy/proxy.h"
+#include "render/proxy/splats.h"
 
 enum { PROXIES_MAX = 4 };
 
@@ -35,7 +35,7 @@ struct orl_renderer {
 };
 
 // Device memory of everything but photographs: points, and targets of common sizes.
-static size_t fixed_bytes(const struct orl_scene *scene, size_t points, const struct proxy *proxy)
+static size_t fixed_bytes(const struct orl_scene *scene, size_t points, const struct cloud *cloud)
 {
     int width = 1, height = 1;
     for (size_t i = 0; i < scene->photo_count; i++) {
@@ -43,13 +43,13 @@ static size_t fixed_bytes(const struct orl_scene *scene, size_t points, const st
         width = c->width > width ? c->width : width;
         height = c->height > height ? c->height : height;
     }
-    return (points ? points : scene->points.count * 24) + 2 * proxy->kind->target_bytes(proxy->state, width, height) +
+    return (points ? points : scene->points.count * 24) + 2 * orl_splats_target_bytes(cloud, width, height) +
            (size_t)width * (size_t)height * (16 + 38 + 20);
 }
 
 static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
 {
-    size_t fixed = fixed_bytes(r->scene, r->point_bytes, &r->proxies[0]);
+    size_t fixed = fixed_bytes(r->scene, r->point_bytes, r->proxies[0].state);
     size_t budget = max_vram_bytes > fixed ? max_vram_bytes - fixed : 1;
     orl_logf(orl_gpu_log(r->gpu), ORL_LOG_INFO,
              "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "
@@ -158,7 +158,7 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
     const bool room = orl_frame_shows_room(frame);
     size_t absent = 0;
     ORL_TRY(draw_surface(frame, params));
-    if (orl_frame_guesses(frame) && painter != &orl_paint_points)
+    if (orl_params_guess(frame->params) && painter != &orl_paint_points)
         orl_fill_depth(frame);
     if (room)
         ORL_TRY(orl_room_paint(frame, &r->room, &absent));
@@ -184,7 +184,7 @@ static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool no
     int count = orl_reconstruction_count(frame), done = 0;
     enum orl_result result = ORL_OK;
     const struct orl_view *whole = frame->view;
-    frame->normals = normals || orl_frame_guesses(frame) || orl_progressive_underpaints(frame) ||
+    frame->normals = normals || orl_params_guess(frame->params) || orl_progressive_underpaints(frame) ||
                      (painter->reads_normals && painter->reads_normals(frame));
     for (; result == ORL_OK && done < count; done++) {
         struct orl_render_params params = *frame->params;
@@ -240,12 +240,11 @@ static enum orl_result finish_frame(struct orl_renderer *r, struct frame *frame,
 static enum orl_result ready_frame(struct orl_renderer *r, struct frame *frame)
 {
     orl_photos_follow_time_step(&r->photos);
-    bool early = r->prefetch && orl_prefetch_time_step(r->prefetch) == r->scene->frame;
-    orl_prefetch_show(early ? r->prefetch : NULL, &r->photos);
-    orl_hull_expect(frame->proxy, early ? r->prefetch : NULL);
+    if (r->prefetch && orl_prefetch_time_step(r->prefetch) == r->scene->frame)
+        frame->prefetch = r->prefetch;
+    orl_prefetch_show(frame->prefetch, &r->photos);
     enum orl_result result = orl_proxy_update(frame);
     r->photos.depth_key = orl_photos_depth_key(frame);
-    ORL_THEN(result, orl_photos_ready(r->gpu, &r->photos));
     ORL_THEN(result, resize(r, frame));
     frame->picture = r->picture;
     return result;

@@ -16,11 +16,10 @@ enum orl_result orl_soft_descent_init(struct orl_gpu *gpu, const struct orl_soft
     const size_t bytes = model->count * sizeof *model->splats;
     *descent = (struct orl_soft_descent){0};
     enum orl_result result = orl_soft_raster_init(gpu, model, &descent->raster);
-    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "mean gradients", bytes, model->moments, &descent->mean));
+    ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "mean gradients", bytes, model->moments, GL_RGBA32F,
+                                    &descent->mean));
     ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "squared gradients", bytes,
-                                    model->moments ? model->moments + model->count : NULL, &descent->square));
-    ORL_THEN(result, orl_tex_view_buffer(gpu, descent->mean, GL_RGBA32F, &descent->mean_texels));
-    ORL_THEN(result, orl_tex_view_buffer(gpu, descent->square, GL_RGBA32F, &descent->square_texels));
+                                    model->moments ? model->moments + model->count : NULL, GL_RGBA32F, &descent->square));
     if (result != ORL_OK)
         orl_soft_descent_finish(gpu, descent);
     return result;
@@ -30,9 +29,6 @@ void orl_soft_descent_finish(struct orl_gpu *gpu, struct orl_soft_descent *desce
 {
     orl_soft_raster_finish(gpu, &descent->raster);
     orl_buf_destroy(gpu, &descent->places);
-    orl_tex_destroy(gpu, &descent->share_texels);
-    orl_tex_destroy(gpu, &descent->mean_texels);
-    orl_tex_destroy(gpu, &descent->square_texels);
     orl_buf_destroy(gpu, &descent->shares);
     orl_buf_destroy(gpu, &descent->mean);
     orl_buf_destroy(gpu, &descent->square);
@@ -46,7 +42,7 @@ size_t orl_soft_descent_bytes(size_t splats, size_t entries, int width, int heig
     const size_t vec4 = 4 * sizeof(float), pixels = (size_t)width * (size_t)height;
     size_t own = splats * ((3 * ORL_SOFT_VEC4S + ORL_SOFT_SEEN_VEC4S) * vec4 + ORL_SOFT_BOUND_WORDS * sizeof(uint32_t));
     size_t lists = (splats + orl_soft_tiles(width, height) + 2 * entries + 2) * sizeof(int) + (entries + 1) * ORL_SOFT_SHARE_VEC4S * vec4;
-    // orl_soft_buffer makes lists larger by a half; the picture, its mip levels and its gradient are less than three.
+    // orl_buf_fit makes lists larger by a half; the picture, its mip levels and its gradient are less than three.
     return own + lists + lists / 2 + 3 * pixels * vec4;
 }
 
@@ -83,24 +79,20 @@ static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, c
     const struct orl_soft_raster *r = &d->raster;
     const size_t places = (r->count + 1 + r->lists.entries) * sizeof(int);
     const size_t shares = (r->lists.entries ? r->lists.entries : 1) * ORL_SOFT_SHARE_VEC4S * 4 * sizeof(float);
-    ORL_TRY(orl_soft_buffer(gpu, "places of soft splats", places, &d->places, 0, NULL));
-    ORL_TRY(orl_soft_buffer(gpu, "gradients of tiles", shares, &d->shares, GL_RGBA32F, &d->share_texels));
+    ORL_TRY(orl_buf_fit(gpu, ORL_OWNER_POINTS, "places of soft splats", places, 0, &d->places));
+    ORL_TRY(orl_buf_fit(gpu, ORL_OWNER_POINTS, "gradients of tiles", shares, GL_RGBA32F, &d->shares));
     orl_buf_write(d->places, 0, places, r->lists.places);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(gpu, "soft/backward.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
-        .images = {{r->blended, 0, GL_READ_ONLY}, {d->gradient_target, 0, GL_READ_ONLY},
-                   [5] = {d->share_texels, 0, GL_WRITE_ONLY}, [6] = {r->seen, 0, GL_READ_ONLY},
-                   [7] = {r->entries, 0, GL_READ_ONLY}},
-        .groups = {orl_groups(r->lists.tiles, ORL_SOFT_TILE_GROUP)},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT});
+        .prog = orl_prog_get(gpu, "soft/backward.comp", NULL, NULL), ORL_PARAMS(*block),
+        .images = {r->blended, d->gradient_target, [5] = &d->shares->texels, &r->projected->texels,
+                   &r->listed->texels},
+        .size = {(int)r->lists.tiles}});
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
+        .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), ORL_PARAMS(*block),
         .bufs = {[2] = r->bounds, [3] = d->places},
-        .images = {[2] = {r->values, 0, GL_READ_WRITE}, [3] = {d->mean_texels, 0, GL_READ_WRITE},
-                   [4] = {d->square_texels, 0, GL_READ_WRITE}, [5] = {d->share_texels, 0, GL_READ_ONLY},
-                   [6] = {r->seen, 0, GL_READ_ONLY}},
-        .groups = {orl_groups(r->count, ORL_POINT_GROUP)},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT});
+        .images = {[2] = &r->splats->texels, &d->mean->texels, &d->square->texels, &d->shares->texels,
+                   &r->projected->texels},
+        .size = {(int)r->count}});
     return ORL_OK;
 }
 

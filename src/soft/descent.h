@@ -45,7 +45,6 @@ size_t orl_soft_descent_bytes(size_t splats, size_t entries, int width, int heig
 struct orl_soft_descent {
     struct orl_soft_raster raster;
     struct orl_buf *places, *shares, *mean, *square; // owned
-    struct orl_tex *share_texels, *mean_texels, *square_texels; // owned: views of three of these
     struct orl_tex *gradient_target;                 // owned
     struct orl_image picture, gradient;              // owned
     size_t max_bytes;                                // 0: any

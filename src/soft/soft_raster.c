@@ -5,18 +5,6 @@
 
 #include "core/memory.h"
 
-enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf, GLenum format,
-                                struct orl_tex **view)
-{
-    if (*buf && (*buf)->size >= size)
-        return ORL_OK;
-    if (view)
-        orl_tex_destroy(gpu, view);
-    orl_buf_destroy(gpu, buf);
-    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, tag, (size + size / 2 + 15) / 16 * 16, NULL, buf));
-    return view ? orl_tex_view_buffer(gpu, *buf, format, view) : ORL_OK;
-}
-
 enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
                                      struct orl_soft_raster *raster)
 {
@@ -25,13 +13,11 @@ enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_
     raster->host_bounds = orl_array(orl_gpu_log(gpu), n, sizeof *raster->host_bounds);
     enum orl_result result = raster->host_bounds ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "soft splats", n * sizeof *model->splats, model->splats,
-                                    &raster->splats));
+                                    GL_RGBA32F, &raster->splats));
     ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "projected soft splats", n * ORL_SOFT_SEEN_VEC4S * vec4,
-                                    NULL, &raster->projected));
+                                    NULL, GL_RGBA32F, &raster->projected));
     ORL_THEN(result, orl_buf_create(gpu, ORL_OWNER_POINTS, "bounds of soft splats", n * sizeof *raster->host_bounds,
-                                    NULL, &raster->bounds));
-    ORL_THEN(result, orl_tex_view_buffer(gpu, raster->splats, GL_RGBA32F, &raster->values));
-    ORL_THEN(result, orl_tex_view_buffer(gpu, raster->projected, GL_RGBA32F, &raster->seen));
+                                    NULL, 0, &raster->bounds));
     if (result != ORL_OK)
         orl_soft_raster_finish(gpu, raster);
     return result;
@@ -39,9 +25,6 @@ enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_
 
 void orl_soft_raster_finish(struct orl_gpu *gpu, struct orl_soft_raster *raster)
 {
-    orl_tex_destroy(gpu, &raster->values);
-    orl_tex_destroy(gpu, &raster->seen);
-    orl_tex_destroy(gpu, &raster->entries);
     orl_buf_destroy(gpu, &raster->splats);
     orl_buf_destroy(gpu, &raster->projected);
     orl_buf_destroy(gpu, &raster->bounds);
@@ -88,24 +71,19 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     block->smooths = smooths;
     ORL_TRY(fit_target(gpu, raster, view->camera.width, view->camera.height));
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
-        .bufs = {[2] = raster->bounds},
-        .images = {[2] = {raster->values, 0, GL_READ_ONLY}, [6] = {raster->seen, 0, GL_WRITE_ONLY}},
-        .groups = {orl_groups(raster->count, ORL_POINT_GROUP)},
-        .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                   GL_BUFFER_UPDATE_BARRIER_BIT});
+        .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), ORL_PARAMS(*block),
+        .bufs = {[2] = raster->bounds}, .images = {[2] = &raster->splats->texels, [6] = &raster->projected->texels},
+        .size = {(int)raster->count}});
     orl_buf_read(raster->bounds, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
     ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
     ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, view->camera.width,
                                 view->camera.height, &raster->lists));
     const size_t tiles = raster->lists.tiles, bytes = (tiles + 1 + raster->lists.entries) * sizeof(int);
-    ORL_TRY(orl_soft_buffer(gpu, "lists of soft splats", bytes, &raster->listed, GL_R32I, &raster->entries));
+    ORL_TRY(orl_buf_fit(gpu, ORL_OWNER_POINTS, "lists of soft splats", bytes, GL_R32I, &raster->listed));
     orl_buf_write(raster->listed, 0, bytes, raster->lists.listed);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(gpu, "soft/blend.comp", NULL, NULL), .params = block, .params_size = sizeof *block,
-        .images = {{raster->blended, 0, GL_WRITE_ONLY}, [6] = {raster->seen, 0, GL_READ_ONLY},
-                   [7] = {raster->entries, 0, GL_READ_ONLY}},
-        .groups = {orl_groups(tiles, ORL_SOFT_TILE_GROUP)},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
+        .prog = orl_prog_get(gpu, "soft/blend.comp", NULL, NULL), ORL_PARAMS(*block),
+        .images = {raster->blended, [6] = &raster->projected->texels, &raster->listed->texels},
+        .size = {(int)tiles}});
     return ORL_OK;
 }

@@ -10,9 +10,7 @@
 // Zero-initialised, it holds nothing.
 struct orl_soft_raster {
     size_t count;
-    struct orl_buf *splats, *projected, *bounds; // owned
-    struct orl_buf *listed;                      // owned: grows
-    struct orl_tex *values, *seen, *entries;     // owned: views of `splats`, `projected` and `listed`
+    struct orl_buf *splats, *projected, *bounds, *listed; // owned; as texels RGBA32F, RGBA32F, none, R32I
     struct orl_tex *blended;                     // owned: RGBA32F, with mip levels: sRGB colour, what passes
     uint32_t (*host_bounds)[ORL_SOFT_BOUND_WORDS]; // owned
     struct orl_soft_lists lists;
@@ -28,9 +26,5 @@ void orl_soft_raster_finish(struct orl_gpu *gpu, struct orl_soft_raster *raster)
 enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
                                      const struct orl_view *view, bool smooths,
                                      struct soft_block *block) ORL_CHECK_RESULT;
-// Makes *buf hold at least `size` bytes; what it held is lost when it grows. view: a view of it as texels of `format`
-// that is made with it; NULL: none.
-enum orl_result orl_soft_buffer(struct orl_gpu *gpu, const char *tag, size_t size, struct orl_buf **buf, GLenum format,
-                                struct orl_tex **view) ORL_CHECK_RESULT;
 
 #endif

@@ -42,19 +42,13 @@ static void a_texture_shows_what_was_written_last(void **state)
     (void)state;
     struct orl_gpu *gpu = open_device();
     struct orl_buf *words = NULL, *notes = NULL;
-    struct orl_tex *shown = NULL;
     uint32_t seen[ROUNDS];
     struct { int32_t mode, place, unused[2]; } block = {0};
-    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "words", 16, NULL, &words), ORL_OK);
-    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "notes", sizeof seen, NULL, &notes),
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "words", 16, NULL, GL_R32UI, &words), ORL_OK);
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "notes", sizeof seen, NULL, 0, &notes),
                      ORL_OK);
-    assert_int_equal(orl_tex_view_buffer(gpu, words, GL_R32UI, &shown), ORL_OK);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/fill_pull.comp", NULL, NULL),
-                             .params = &block, .params_size = sizeof block,
-                             .bufs = {words, notes},
-                             .images = {{shown, 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_SHADER_STORAGE_BARRIER_BIT};
+                             ORL_PARAMS(block), .bufs = {words, notes}, .images = {&words->texels}};
     for (uint32_t i = 0; i < ROUNDS; i++) {
         const uint32_t data[4] = {1000 * i};
         orl_buf_write(words, 0, sizeof data, data);
@@ -68,7 +62,6 @@ static void a_texture_shows_what_was_written_last(void **state)
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);
     for (uint32_t i = 0; i < ROUNDS; i++)
         assert_int_equal(seen[i], 1000 * i + 1);
-    orl_tex_destroy(gpu, &shown);
     orl_buf_destroy(gpu, &words);
     orl_buf_destroy(gpu, &notes);
     orl_gpu_destroy(&gpu);
@@ -82,7 +75,7 @@ static void a_write_comes_after_a_clear(void **state)
     struct orl_buf *words = NULL;
     struct orl_tex *work = NULL;
     const struct orl_tex_params params = {.width = 1024, .height = 1024, .format = GL_RGBA32F, .tag = "work"};
-    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "words", 4096, NULL, &words), ORL_OK);
+    assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "words", 4096, NULL, 0, &words), ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &work), ORL_OK);
     for (uint32_t i = 0; i < ROUNDS; i++) {
         const uint32_t data[4] = {i, 1, 1, 0};

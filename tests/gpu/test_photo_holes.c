@@ -24,11 +24,7 @@ static void guess(float *depth)
     assert_int_equal(orl_tex_create(gpu, &params, &guessed), ORL_OK);
     orl_tex_write(tex, GL_RED, GL_FLOAT, depth);
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/photo_holes.comp", NULL, NULL),
-                             .params = &block, .params_size = sizeof block,
-                             .images = {{tex, 0, GL_READ_ONLY}, {guessed, 0, GL_WRITE_ONLY}},
-                             .groups = {orl_groups(WIDTH, ORL_PIXEL_GROUP_X),
-                                        orl_groups(HEIGHT, ORL_PIXEL_GROUP_Y), 1},
-                             .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT};
+                             ORL_PARAMS(block), .images = {tex, guessed}, .size = {WIDTH, HEIGHT}};
     orl_gpu_dispatch(gpu, &d);
     orl_tex_read(guessed, 0, GL_RED, GL_FLOAT, sizeof(float) * WIDTH * HEIGHT, depth);
     assert_int_equal(orl_gpu_finish(gpu), ORL_OK);

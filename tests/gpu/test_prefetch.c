@@ -189,7 +189,7 @@ static void files_are_read_once(void **state)
     orl_proxy_finish(gpu, &s.proxy);
     assert_int_equal(orl_proxy_create(gpu, &s.f.scene, &orl_proxy_hull, 0, &s.proxy), ORL_OK);
     orl_prefetch_show(prefetch, &s.photos);
-    orl_hull_expect(&s.proxy, prefetch);
+    s.frame.prefetch = prefetch;
     assert_int_equal(orl_proxy_update(&s.frame), ORL_OK);
     assert_int_equal(s.proxy.vertex_count, count);
     assert_memory_equal(s.proxy.vertices, plain, count * sizeof *plain);

@@ -100,7 +100,7 @@ static void too_little_memory_is_an_error_with_advice(void **state)
         skip();
     }
     expect_refusal(made);
-    expect_refusal(orl_buf_create(gpu, ORL_OWNER_FRAME, "everything", (size_t)1 << 46, NULL, &buf));
+    expect_refusal(orl_buf_create(gpu, ORL_OWNER_FRAME, "everything", (size_t)1 << 46, NULL, 0, &buf));
     assert_int_equal(orl_gpu_bytes(gpu), 0);
     params = (struct orl_tex_params){.width = 4, .height = 4, .format = GL_R32F, .tag = "small"};
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);

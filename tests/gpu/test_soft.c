@@ -277,10 +277,8 @@ static void test_keep(void **state)
     uint8_t kept[SIDE * SIDE];
     show_splats(blended, MIDDLE, (SIDE - 2) * SIDE);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
-        .prog = orl_prog_get(gpu, "soft/keep.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
-        .textures = {blended}, .images = {{slot, 0, GL_WRITE_ONLY}}, .image_layers = {1},
-        .groups = {orl_groups(SIDE, ORL_PIXEL_GROUP_X), orl_groups(SIDE, ORL_PIXEL_GROUP_Y)},
-        .barrier = GL_TEXTURE_UPDATE_BARRIER_BIT});
+        .prog = orl_prog_get(gpu, "soft/keep.comp", NULL, NULL), ORL_PARAMS(block),
+        .textures = {blended}, .images = {slot}, .size = {SIDE, SIDE}});
     orl_tex_read(slot, 0, GL_RED, GL_UNSIGNED_BYTE, sizeof kept, kept);
     for (size_t i = 0; i < SIDE * SIDE; i++)
         assert_in_range(kept[i] + 1, i % SIDE == 0 && i / SIDE >= SIDE - 2 ? 255 : 128,
@@ -317,18 +315,15 @@ static void mix(const float gathered[SIDE * SIDE], size_t open, float splats, fl
         memcpy(painted[i], (uint8_t[]){50, i == UNPAINTED ? 0 : 100}, sizeof painted[i]);
     orl_tex_write(specks, GL_RG, GL_UNSIGNED_BYTE, painted);
     struct orl_dispatch d = {
-        .prog = orl_prog_get(gpu, "soft/compare.comp", NULL, NULL), .params = &block, .params_size = sizeof block,
-        .textures = {blended}, .images = {{other, 0, GL_READ_ONLY}, {differs, 0, GL_WRITE_ONLY}},
-        .groups = {orl_groups(SIDE, ORL_PIXEL_GROUP_X), orl_groups(SIDE, ORL_PIXEL_GROUP_Y)},
-        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
+        .prog = orl_prog_get(gpu, "soft/compare.comp", NULL, NULL), ORL_PARAMS(block),
+        .textures = {blended}, .images = {other, differs}, .size = {SIDE, SIDE}};
     orl_gpu_dispatch(gpu, &d);
     orl_tex_make_mipmaps(differs, 0);
     d.prog = orl_prog_get(gpu, "soft/mix.comp", NULL, "SPECKS");
     d.textures[0] = differs;
-    d.images[1] = (struct orl_image_binding){own, 0, GL_READ_WRITE};
-    d.images[2] = (struct orl_image_binding){blended, 0, GL_READ_ONLY};
-    d.images[3] = (struct orl_image_binding){specks, 0, GL_READ_WRITE};
-    d.barrier = GL_TEXTURE_UPDATE_BARRIER_BIT;
+    d.images[1] = own;
+    d.images[2] = blended;
+    d.images[3] = specks;
     orl_gpu_dispatch(gpu, &d);
     orl_tex_read(own, 0, GL_RGBA, GL_FLOAT, SIDE * SIDE * sizeof *picture, picture);
     orl_tex_read(specks, 0, GL_RG, GL_UNSIGNED_BYTE, sizeof painted, painted);

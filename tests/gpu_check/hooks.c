@@ -207,10 +207,10 @@ static void check_texture(GLuint program, GLuint texture, int level, int layer)
     free(values);
 }
 
-// The pictures that a program may write.
+// The pictures that a program may write: of what GL tells, all that it reads or writes.
 static void check_images(GLuint program)
 {
-    GLint count = 0, size, unit, texture, level, layered, layer, access;
+    GLint count = 0, size, unit, texture, level, layered, layer;
     GLenum type;
     char name[NAME_MAX_BYTES];
     glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
@@ -223,8 +223,7 @@ static void check_images(GLuint program)
         glGetIntegeri_v(GL_IMAGE_BINDING_LEVEL, (GLuint)unit, &level);
         glGetIntegeri_v(GL_IMAGE_BINDING_LAYERED, (GLuint)unit, &layered);
         glGetIntegeri_v(GL_IMAGE_BINDING_LAYER, (GLuint)unit, &layer);
-        glGetIntegeri_v(GL_IMAGE_BINDING_ACCESS, (GLuint)unit, &access);
-        if (texture && access != GL_READ_ONLY)
+        if (texture)
             check_texture(program, (GLuint)texture, level, layered ? -1 : layer);
     }
 }

@@ -5,14 +5,6 @@
 
 #include "scene/ground_plane.h"
 #include "shared/constants.h"
-#include "shared/interop.h"
-
-void orl_pixel_groups(int width, int height, unsigned groups[3])
-{
-    groups[0] = orl_groups((size_t)width, ORL_PIXEL_GROUP_X);
-    groups[1] = orl_groups((size_t)height, ORL_PIXEL_GROUP_Y);
-    groups[2] = 1;
-}
 
 enum orl_result orl_frame_target(const struct frame *frame, const char *tag, bool wanted, GLenum format,
                                  struct orl_tex **tex)
@@ -35,9 +27,9 @@ void orl_frame_finish(struct orl_frame *frame)
     orl_image_finish(&frame->confidence);
 }
 
-bool orl_frame_guesses(const struct frame *frame)
+bool orl_params_guess(const struct orl_render_params *params)
 {
-    return frame->params->fill == ORL_FILL_DEPTH || frame->params->fill == ORL_FILL_GROUND;
+    return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
 }
 
 bool orl_frame_shows_room(const struct frame *frame)
@@ -47,7 +39,7 @@ bool orl_frame_shows_room(const struct frame *frame)
 
 bool orl_frame_rests(const struct frame *frame)
 {
-    return orl_frame_guesses(frame) && frame->scene->backdrop_rests;
+    return orl_params_guess(frame->params) && frame->scene->backdrop_rests;
 }
 
 double orl_frame_footprint(const struct frame *frame)

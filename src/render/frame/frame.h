@@ -6,6 +6,7 @@
 
 struct proxy;
 struct photos;
+struct prefetch;
 struct paint;
 
 // The result of a proxy, which is all that later passes see of it.
@@ -30,6 +31,7 @@ struct frame {
     struct proxy *proxy;       // draws the surfaces of this view and of the photographs
     struct surface surface;    // surface that the view sees
     struct photos *photos;     // photographs on the device
+    struct prefetch *prefetch; // what was prepared for this frame, hull/prefetch.h; NULL: nothing
     struct paint *paint;       // what the passes that make colours keep, paint/paint.h
     // Indices of the photographs that this frame asks, ascending; memory of the renderer.
     size_t *chosen;
@@ -44,10 +46,8 @@ struct frame {
 enum orl_result orl_frame_target(const struct frame *frame, const char *tag, bool wanted, GLenum format,
                                  struct orl_tex **tex) ORL_CHECK_RESULT;
 
-// Number of work groups that cover width x height pixels.
-void orl_pixel_groups(int width, int height, unsigned groups[3]);
-// True if this frame estimates background depth where no surface covers a pixel.
-bool orl_frame_guesses(const struct frame *frame);
+// True if background depth is estimated where no surface covers a pixel.
+bool orl_params_guess(const struct orl_render_params *params);
 // True if this frame shows the scene's room (papers/room.h) where there is no surface.
 bool orl_frame_shows_room(const struct frame *frame);
 // True if the backdrop stays where it is in photographs (scene.h).

@@ -20,6 +20,7 @@ struct orl_combine {
     const char *name;
     int sweeps; // 1 or 2; 0: implemented by one painter only
     int states; // state images that are kept between sweeps, [0, 2]
+    const char *radiance; // shader file in its place for radiance; NULL: that of methods
 };
 
 // A painter turns a surface into colours.

@@ -31,13 +31,9 @@ static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
                                           .linear = true, .tag = "silhouette"};
     ORL_TRY(orl_tex_create(gpu, &params, &tex));
     orl_tex_write(tex, GL_RED, GL_FLOAT, cone->distance.data);
-    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL),
-                             .params = block, .params_size = sizeof *block,
-                             .bufs = {field}, .textures = {tex},
-                             .groups = {orl_groups(voxels, CARVE_GROUP)},
-                             .barrier = GL_SHADER_STORAGE_BARRIER_BIT |
-                                        GL_BUFFER_UPDATE_BARRIER_BIT};
-    orl_gpu_dispatch(gpu, &d);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL), ORL_PARAMS(*block),
+        .bufs = {field}, .textures = {tex}, .size = {(int)voxels}});
     orl_tex_destroy(gpu, &tex);
     return ORL_OK;
 }
@@ -49,7 +45,7 @@ enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones,
     size_t voxels = orl_hull_voxels(&cones->cube);
     uint32_t word;
     *field = NULL;
-    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_FRAME, "voxels", voxels * sizeof(float), NULL, field));
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_FRAME, "voxels", voxels * sizeof(float), NULL, 0, field));
     memcpy(&word, &unlimited, sizeof word);
     orl_buf_fill(*field, word);
     enum orl_result result = ORL_OK;

@@ -11,21 +11,16 @@
 #include "gpu/raster.h"
 #include "render/hull/prefetch.h"
 #include "render/photos/photos.h"
-#include "render/proxy/raster_target.h"
 #include "shared/hull_blocks.h"
 
-static void forget(struct orl_gpu *gpu, struct voxel_state *state)
+static void forget(struct orl_gpu *gpu, void *handle)
 {
+    struct voxel_state *state = handle;
     orl_mesh_state_finish(gpu, &state->mesh);
     orl_buf_destroy(gpu, &state->centres);
     orl_voxels_finish(&state->voxels);
     free(state->seen);
-    *state = (struct voxel_state){.said_endless = state->said_endless, .prefetch = state->prefetch};
-}
-
-static void finish(struct orl_gpu *gpu, void *state)
-{
-    forget(gpu, state);
+    *state = (struct voxel_state){.said_endless = state->said_endless};
 }
 
 // Takes the voxels, and with `hull` their mesh, from what was prepared for the frame, or makes them.
@@ -38,7 +33,7 @@ static enum orl_result make(const struct frame *frame, struct voxel_state *state
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: no silhouettes to make a hull of; see oriel import",
                         frame->scene->dir);
-    if (!orl_prefetch_take_hull(frame->gpu, state->prefetch, state->key, voxels, mesh)) {
+    if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, state->key, voxels, mesh)) {
         ORL_TRY(orl_voxels_make(frame, voxels));
         if (hull)
             ORL_TRY(orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh));
@@ -54,7 +49,7 @@ static enum orl_result upload(struct orl_gpu *gpu, struct voxel_state *state, bo
     struct voxels *voxels = &state->voxels;
     if (!hull)
         return orl_buf_create(gpu, ORL_OWNER_POINTS, "voxel centres",
-                              voxels->count * sizeof *voxels->centre, voxels->centre,
+                              voxels->count * sizeof *voxels->centre, voxels->centre, 0,
                               &state->centres);
     orl_voxels_finish(voxels); // the mesh is all that is drawn
     return orl_mesh_state_upload(gpu, &state->mesh);
@@ -79,18 +74,10 @@ static enum orl_result update(const struct frame *frame, void *handle, bool *cha
     return result;
 }
 
-void orl_hull_expect(struct proxy *proxy, struct prefetch *prefetch)
-{
-    struct voxel_state *state = proxy->state;
-    if (proxy->kind == &orl_proxy_hull || proxy->kind == &orl_proxy_voxels)
-        state->prefetch = prefetch;
-}
-
 const struct orl_proxy_kind orl_proxy_hull = {
     .name = "hull", .state_size = sizeof(struct voxel_state), .update = update, .vertices = orl_mesh_vertices,
-    .finish = finish,
+    .finish = forget,
     .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make,
-    .finish_target = orl_raster_target_finish, .target_bytes = orl_raster_target_bytes,
     .draw = orl_mesh_draw,
 };
 
@@ -122,11 +109,10 @@ static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view 
     orl_set_focal(&view->camera, block.view_focal);
     const struct orl_raster raster = {
         .prog = orl_prog_get_raster(gpu, "hull/billboard.vert", "hull/depth.frag", NULL),
-        .params = &block, .params_size = sizeof block,
+        ORL_PARAMS(block),
         .inputs = {{state->centres, 0, 3 * sizeof(float), 3, GL_FLOAT, true}},
         .count = 6, .instances = state->voxels.count,
         .targets = {target->surface.depth, target->surface.normal}, .depth = target->test,
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
     };
     orl_pass_begin(gpu, "voxels");
     orl_gpu_raster(gpu, &raster);
@@ -135,9 +121,8 @@ static void draw(struct orl_gpu *gpu, const void *handle, const struct orl_view 
 
 const struct orl_proxy_kind orl_proxy_voxels = {
     .name = "voxels", .state_size = sizeof(struct voxel_state), .update = update, .vertices = vertices,
-    .finish = finish,
-    .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make,
-    .finish_target = orl_raster_target_finish, .target_bytes = orl_raster_target_bytes, .draw = draw,
+    .finish = forget,
+    .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make, .draw = draw,
 };
 
 // --- which photographs see a voxel ---
@@ -158,14 +143,9 @@ static enum orl_result see_from(const struct frame *frame, struct voxel_state *s
                                .voxel = (float)state->voxels.cube.voxel};
     orl_set_pose(&view.cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view.camera, block.focal);
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(frame->gpu, "hull/seen.comp", NULL, NULL),
-        .params = &block, .params_size = sizeof block,
-        .bufs = {state->centres, seen},
-        .images = {{surface.depth, 0, GL_READ_ONLY}},
-        .groups = {orl_groups(state->voxels.count, SEEN_GROUP)},
-        .barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT};
-    orl_gpu_dispatch(frame->gpu, &d);
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "hull/seen.comp", NULL, NULL), ORL_PARAMS(block),
+        .bufs = {state->centres, seen}, .images = {surface.depth}, .size = {block.voxel_count}});
     return ORL_OK;
 }
 
@@ -180,7 +160,7 @@ enum orl_result orl_voxels_see(const struct frame *frame, struct voxel_state *st
     state->seen = orl_array(log, words, sizeof *state->seen);
     enum orl_result result =
         state->seen ? orl_buf_create(frame->gpu, ORL_OWNER_FRAME, "what photographs see",
-                                     words * sizeof *state->seen, NULL, &seen)
+                                     words * sizeof *state->seen, NULL, 0, &seen)
                     : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < frame->scene->photo_count; i++)
         if (frame->photos->states[i].usable)

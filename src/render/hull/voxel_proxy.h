@@ -11,7 +11,6 @@ struct voxel_state {
     struct mesh_state mesh;  // of orl_proxy_hull; first: see mesh_proxy.h
     uint64_t key;            // orl_voxels_key of the voxels
     bool said_endless;
-    struct prefetch *prefetch; // orl_hull_expect
     // Of orl_proxy_voxels:
     struct voxels voxels;
     struct orl_buf *centres; // voxels.centre on the device
@@ -22,9 +21,6 @@ struct voxel_state {
     size_t words;
 };
 
-// Gives a proxy of these kinds what was prepared for the frame that it is next brought up to date for; NULL:
-// nothing. Does nothing to other kinds.
-void orl_hull_expect(struct proxy *proxy, struct prefetch *prefetch);
 // Finds which of the frame's photographs see which voxels of its proxy, unless that is known.
 enum orl_result orl_voxels_see(const struct frame *frame, struct voxel_state *state);
 // Width of a billboard, scene units: no voxel's projection reaches beyond it (Goldluecke 2003,

@@ -32,10 +32,10 @@ enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int widt
     return orl_tex_fit(gpu, &params, &fill->guesses);
 }
 
-void orl_fill_groups(int width, int height, unsigned groups[3])
+void orl_fill_size(int width, int height, int size[2])
 {
-    orl_pixel_groups((width + 1) / 2, (height + 1) / 2, groups);
-    groups[0] = orl_groups(groups[0], ORL_FILL_RUN);
+    size[0] = (width + 2 * ORL_FILL_RUN - 1) / (2 * ORL_FILL_RUN);
+    size[1] = (height + 1) / 2;
 }
 
 // One program from texture to texture. applies: it is of shaders/fill/apply.glsl, else an invocation is for a pixel
@@ -47,15 +47,10 @@ static void run(const struct frame *frame, const char *file, const char *defines
     struct image_block block = frame->paint->fill.block;
     block.image_size[0] = width;
     block.image_size[1] = height;
-    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, file, NULL, defines),
-                             .params = &block, .params_size = sizeof block,
-                             .images = {{from, 0, GL_READ_ONLY}, {to, 0, GL_READ_WRITE}, {beside, 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_FETCH_BARRIER_BIT};
+    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, file, NULL, defines), ORL_PARAMS(block),
+                             .images = {from, to, beside}, .size = {width, height}};
     if (applies)
-        orl_fill_groups(width, height, d.groups);
-    else
-        orl_pixel_groups(width, height, d.groups);
+        orl_fill_size(width, height, d.size);
     orl_gpu_dispatch(frame->gpu, &d);
 }
 

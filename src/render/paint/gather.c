@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "render/frame/method.h"
 #include "render/photos/photos.h"
@@ -44,8 +45,7 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct 
     enum orl_result result = gather->list && gather->options ? ORL_OK : ORL_ERR_MEMORY;
     if (result == ORL_OK)
         result = orl_buf_create(gpu, ORL_OWNER_FRAME, "photographs of a frame",
-                                photo_count * sizeof *gather->list, NULL, &gather->photos);
-    ORL_THEN(result, orl_tex_view_buffer(gpu, gather->photos, GL_RGBA32F, &gather->photo_rows));
+                                photo_count * sizeof *gather->list, NULL, GL_RGBA32F, &gather->photos);
     if (result != ORL_OK)
         orl_gather_finish(gpu, gather);
     return result;
@@ -53,7 +53,6 @@ enum orl_result orl_gather_init(struct orl_gpu *gpu, size_t photo_count, struct 
 
 void orl_gather_finish(struct orl_gpu *gpu, struct gather *gather)
 {
-    orl_tex_destroy(gpu, &gather->photo_rows);
     orl_buf_destroy(gpu, &gather->photos);
     orl_buf_destroy(gpu, &gather->tile_lists);
     free(gather->list);
@@ -151,7 +150,7 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
         .last_mip = (float)(color->levels - 1),
         .border_px = fades ? (float)ORL_BORDER_PX / (float)photos->divide : 0,
         .outlier_severity = params->outliers > 0 ? 1 / (params->outliers * params->outliers) : 0,
-        .blur_per_radian = orl_frame_guesses(frame) ? params->guess_blur : 0,
+        .blur_per_radian = orl_params_guess(frame->params) ? params->guess_blur : 0,
         .model_variance = (float)(photos->sensor.model * photos->sensor.model),
         .min_radiance = orl_least_radiance(&photos->sensor, photos->ev_brightest, true),
     };
@@ -161,125 +160,79 @@ struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, 
     return block;
 }
 
-struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
-                                 const struct orl_slot *slots, const char *defines)
+struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file, const char *defines)
 {
+    const struct orl_render_params *p = frame->params;
+    // For radiance, visibility and combination are the same for all methods, since light that bleeds
+    // across an edge may be a thousand times as bright as the surface there.
+    const char *merge = p->combine->radiance ? p->combine->radiance : "gather/radiance/merge.glsl";
+    const bool light = frame->radiance && strcmp(p->visibility, "none") != 0;
+    const struct orl_slot slots[] = {
+        {"sample", frame->radiance ? "gather/sample/radiance.glsl" : "gather/sample/srgb.glsl"},
+        {"visibility", light ? "gather/radiance/light.glsl" : ORL_PATH("gather/visibility", "%s.glsl", p->visibility)},
+        {"weight", ORL_PATH("gather/weight", "%s.glsl", p->weight)},
+        {"combine", frame->radiance ? merge : ORL_PATH("gather/combine", "%s.glsl", p->combine->name)},
+        {0},
+    };
     char *text = orl_format(orl_gpu_log(frame->gpu), "%s\n%s%s%s%s", frame->paint->gather.options,
                             frame->reads_chroma ? "CHROMA 1\n" : "",
                             frame->radiance ? "RADIANCE 1\n" : "",
-                            frame->params->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
+                            p->sampling == ORL_SAMPLING_BICUBIC ? "BICUBIC 1\n" : "",
                             defines ? defines : "");
     struct orl_prog *prog = text ? orl_prog_get(frame->gpu, file, slots, text) : NULL;
     free(text);
     return prog;
 }
 
-// For radiance, visibility and combination are the same for all methods, since light that bleeds
-// across an edge may be a thousand times as bright as the surface there.
-void orl_gather_slots(const struct frame *frame, struct gather_slots *out)
-{
-    const struct orl_render_params *p = frame->params;
-    bool tested = strcmp(p->visibility, "none") != 0;
-    const char *visibility = frame->radiance && tested ? "gather/radiance/light.glsl" : NULL;
-    const char *combine = frame->radiance ? "gather/radiance/merge.glsl" : NULL;
-    const struct {
-        const char *slot, *name, *instead;
-    } rows[] = {
-        {"sample", frame->radiance ? "radiance" : "srgb", NULL},
-        {"visibility", p->visibility, visibility},
-        {"weight", p->weight, NULL},
-        {"combine", p->combine->name, combine},
-    };
-    _Static_assert(ORL_COUNT(rows) < GATHER_SLOTS, "the last slot is the end");
-    memset(out, 0, sizeof *out);
-    for (size_t i = 0; i < ORL_COUNT(rows); i++) {
-        if (rows[i].instead)
-            snprintf(out->files[i], sizeof out->files[i], "%s", rows[i].instead);
-        else
-            snprintf(out->files[i], sizeof out->files[i], "gather/%s/%s.glsl", rows[i].slot,
-                     rows[i].name);
-        out->slots[i] = (struct orl_slot){rows[i].slot, out->files[i]};
-    }
-}
-
-void orl_gather_set_slot(struct gather_slots *slots, const char *slot, const char *file)
-{
-    for (size_t i = 0; i < GATHER_SLOTS && slots->slots[i].name; i++)
-        if (strcmp(slots->slots[i].name, slot) == 0)
-            snprintf(slots->files[i], sizeof slots->files[i], "%s", file);
-}
-
-enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
-                              struct orl_buf **buf)
-{
-    if (*buf && (*buf)->size >= bytes)
-        return ORL_OK;
-    orl_buf_destroy(gpu, buf);
-    return orl_buf_create(gpu, ORL_OWNER_FRAME, tag, bytes, NULL, buf);
-}
-
 // --- the generic painter ---
 
 // Lists the photographs that contribute most to each tile. The rest of the dispatch is that of the
 // gather.
-static enum orl_result choose_radiance(const struct frame *frame, const struct gather_slots *slots,
-                                       struct orl_dispatch d)
+static enum orl_result choose_radiance(const struct frame *frame, struct orl_dispatch d)
 {
-    size_t across = d.groups[0], down = d.groups[1];
-    ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles", across * down * ORL_RADIANCE_LIST * sizeof(int),
-                          &frame->paint->gather.tile_lists));
-    d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", slots->slots, NULL);
+    const size_t across = orl_groups((size_t)d.size[0], ORL_PIXEL_GROUP_X);
+    const size_t down = orl_groups((size_t)d.size[1], ORL_PIXEL_GROUP_Y);
+    ORL_TRY(orl_buf_fit(frame->gpu, ORL_OWNER_FRAME, "photographs of tiles",
+                        across * down * ORL_RADIANCE_LIST * sizeof(int), 0, &frame->paint->gather.tile_lists));
+    d.prog = orl_gather_prog(frame, "gather/radiance/choose.comp", NULL);
     d.bufs[1] = frame->paint->gather.tile_lists;
-    d.groups[0] = orl_groups(across, 8);
-    d.groups[1] = orl_groups(down, 8);
-    d.barrier = GL_SHADER_STORAGE_BARRIER_BIT;
+    d.size[0] = (int)across;
+    d.size[1] = (int)down;
     orl_gpu_pass(frame->gpu, "choose", &d);
     return ORL_OK;
 }
 
-static struct orl_prog *generic_program(const struct frame *frame,
-                                        const struct gather_slots *slots, int sweep)
+static struct orl_prog *generic_program(const struct frame *frame, int sweep)
 {
     char defines[32];
     bool limited = frame->radiance && frame->params->paint->finishes;
     snprintf(defines, sizeof defines, "SWEEP %d\n%s", sweep, limited ? "LIMITED 1\n" : "");
-    return orl_gather_prog(frame, "gather/gather.comp", slots->slots, defines);
+    return orl_gather_prog(frame, "gather/gather.comp", defines);
 }
 
 static bool reads_normals(const struct frame *frame)
 {
-    struct gather_slots slots;
-    orl_gather_slots(frame, &slots);
-    for (int sweep = 0; sweep < 2; sweep++)
-        if (orl_prog_reads(generic_program(frame, &slots, sweep), "view_normal"))
-            return true;
-    return false;
+    return orl_prog_reads(generic_program(frame, 0), "view_normal") ||
+           orl_prog_reads(generic_program(frame, 1), "view_normal");
 }
 
 // One sweep over one batch: the photographs of frame->chosen from `first` on, all resident.
 static enum orl_result gather(const struct frame *frame, size_t first, size_t count, int sweep)
 {
-    struct gather_slots slots;
     struct gather_block block = orl_gather_prepare(frame, first, count);
-    orl_gather_slots(frame, &slots);
     struct orl_tex *color = frame->photos->color;
     struct orl_dispatch d = {
-        .prog = generic_program(frame, &slots, sweep),
-        .params = &block, .params_size = sizeof block,
+        .prog = generic_program(frame, sweep),
+        ORL_PARAMS(block),
         // Without depth maps no shader reads them, but a sampler wants a texture.
         .textures = {color, frame->photos->depth ? frame->photos->depth : color,
                      [ORL_PHOTO_CHROMA] = frame->photos->chroma},
-        .images = {{frame->surface.depth, 0, GL_READ_ONLY},
-                   {frame->picture, 0, GL_READ_WRITE},
-                   {frame->radiance ? frame->paint->trusted : frame->paint->states[0], 0, GL_READ_WRITE},
-                   {frame->paint->states[1], 0, GL_READ_WRITE},
-                   {frame->surface.normal, 0, GL_READ_ONLY},
-                   [PHOTO_ROWS] = {frame->paint->gather.photo_rows, 0, GL_READ_ONLY}},
-        // The storage barrier is needed because the next batch overwrites the lists of this one.
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT};
-    orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
+        .images = {frame->surface.depth, frame->picture,
+                   frame->radiance ? frame->paint->trusted : frame->paint->states[0], frame->paint->states[1],
+                   frame->surface.normal, [PHOTO_ROWS] = &frame->paint->gather.photos->texels},
+        .size = {frame->view->camera.width, frame->view->camera.height}};
     if (frame->radiance) {
-        ORL_TRY(choose_radiance(frame, &slots, d));
+        ORL_TRY(choose_radiance(frame, d));
         d.bufs[1] = frame->paint->gather.tile_lists;
     }
     orl_gpu_pass(frame->gpu, "gather", &d);

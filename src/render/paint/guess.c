@@ -38,7 +38,7 @@ static size_t cost_bytes(const struct frame *frame)
 
 bool orl_guess_applies(const struct frame *frame)
 {
-    return orl_frame_guesses(frame) && plane_count(frame) > 1 &&
+    return orl_params_guess(frame->params) && plane_count(frame) > 1 &&
            cost_bytes(frame) <= orl_gpu_caps(frame->gpu)->max_storage_block;
 }
 
@@ -59,8 +59,8 @@ enum orl_result orl_guess_resize(const struct frame *frame, struct guess *guess)
     size_t bytes = cost_bytes(frame);
     if (!orl_guess_applies(frame))
         return ORL_OK;
-    ORL_TRY(orl_make_room(gpu, "costs of depths", bytes, &guess->costs));
-    ORL_TRY(orl_make_room(gpu, "costs of paths", bytes, &guess->sums));
+    ORL_TRY(orl_buf_fit(gpu, ORL_OWNER_FRAME, "costs of depths", bytes, 0, &guess->costs));
+    ORL_TRY(orl_buf_fit(gpu, ORL_OWNER_FRAME, "costs of paths", bytes, 0, &guess->sums));
     ORL_TRY(orl_tex_fit(gpu, &params, &guess->estimated));
     params.tag = "picked depth";
     return orl_tex_fit(gpu, &params, &guess->picked);
@@ -70,13 +70,14 @@ static struct orl_prog *program(const struct frame *frame, const char *file, con
 {
     char defines[48];
     snprintf(defines, sizeof defines, "CELL %d\nPLANES %d\n%s", cell_side(frame), plane_count(frame), along);
-    return orl_gather_prog(frame, file, NULL, defines);
+    return orl_gather_prog(frame, file, defines);
 }
 
 static void run(const struct frame *frame, const char *file, int width, int height, struct orl_dispatch *d)
 {
     d->prog = program(frame, file, "");
-    orl_pixel_groups(width, height, d->groups);
+    d->size[0] = width;
+    d->size[1] = height;
     orl_gpu_dispatch(frame->gpu, d);
 }
 
@@ -86,8 +87,8 @@ static void smooth(const struct frame *frame, int width, int height, struct orl_
     static const char *const along[] = {"ALONG 0", "ALONG 1", "ALONG 2", "ALONG 3"};
     for (int k = 0; k < 4; k++) {
         d->prog = program(frame, "guess/smooth.comp", along[k]);
-        d->groups[0] = orl_groups((size_t)(k < 2 ? height : width), GUESS_LINES);
-        d->groups[1] = 1;
+        d->size[0] = k < 2 ? height : width;
+        d->size[1] = 1;
         orl_gpu_dispatch(frame->gpu, d);
     }
 }
@@ -104,10 +105,8 @@ void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choic
     d.params = &planes;
     d.bufs[COSTS] = guess->costs;
     d.bufs[SUMS] = guess->sums;
-    d.images[0].access = GL_READ_WRITE;
-    d.images[1] = (struct orl_image_binding){guess->estimated, 0, GL_READ_WRITE};
-    d.images[2] = (struct orl_image_binding){guess->picked, 0, GL_READ_WRITE};
-    d.barrier = GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
+    d.images[1] = guess->estimated;
+    d.images[2] = guess->picked;
     orl_pass_begin(frame->gpu, "guess");
     run(frame, "guess/cost.comp", width, height, &d);
     smooth(frame, width, height, &d);

@@ -12,8 +12,7 @@ enum { PHOTO_ROWS = 7 };  // image binding of shaders/gather/photo.glsl
 
 struct gather {
     struct photo_data *list;    // parameters of the photographs of one dispatch
-    struct orl_buf *photos;     // the same on the device
-    struct orl_tex *photo_rows; // view of `photos` as RGBA32F texels
+    struct orl_buf *photos;     // the same on the device, as RGBA32F texels
     struct orl_buf *tile_lists; // listed photographs of each tile
     char *options;              // owned: defines RENDER_OPTIONS (render_blocks.h)
 };
@@ -26,23 +25,10 @@ int orl_tile_side(const struct frame *frame);
 // Makes the parameters of a program that reads photographs, and uploads those of this dispatch:
 // `count` photographs of frame->chosen from `first` on, which must be resident.
 struct gather_block orl_gather_prepare(const struct frame *frame, size_t first, size_t count);
-// The program of the shader `file` with the declaration of the options and `defines` (NULL: none).
-struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file,
-                                 const struct orl_slot *slots, const char *defines);
-// The files of the method's slots for orl_prog_get.
-enum { GATHER_SLOTS = 5 };
-struct gather_slots {
-    char files[GATHER_SLOTS][64];
-    struct orl_slot slots[GATHER_SLOTS];
-};
-void orl_gather_slots(const struct frame *frame, struct gather_slots *out);
-// Puts another file into a slot.
-void orl_gather_set_slot(struct gather_slots *slots, const char *slot, const char *file);
+// The program of the shader `file` with the method's slots, the declaration of the options and `defines` (NULL: none).
+struct orl_prog *orl_gather_prog(const struct frame *frame, const char *file, const char *defines);
 // Empties the picture and what belongs to it.
 void orl_gather_clear(const struct frame *frame);
-// Ensures room for `bytes` in *buf, whose contents may be lost.
-enum orl_result orl_make_room(struct orl_gpu *gpu, const char *tag, size_t bytes,
-                              struct orl_buf **buf);
 
 // For a progressive frame: gives pixels that no photograph has painted the colours of the proxy, if
 // photographs are absent. Does nothing in the first frame of which that is so: without normals, the proxy has
@@ -66,8 +52,8 @@ struct fill {
 enum orl_result orl_fill_resize(struct orl_gpu *gpu, struct fill *fill, int width, int height) ORL_CHECK_RESULT;
 void orl_fill_finish(struct orl_gpu *gpu, struct fill *fill);
 
-// Work groups of a program of shaders/fill/apply.glsl for a picture of this size.
-void orl_fill_groups(int width, int height, unsigned groups[3]);
+// Invocations of a program of shaders/fill/apply.glsl for a picture of this size.
+void orl_fill_size(int width, int height, int size[2]);
 
 // Writes the estimated background depth ("guess" in identifiers), as negative values, where the
 // surface has none. With fill=ground it is no farther than the scene's ground.

@@ -43,15 +43,10 @@ enum orl_result orl_soft_layer_keep(struct orl_gpu *gpu, struct orl_soft_raster 
 {
     struct soft_block block;
     ORL_TRY(draw(gpu, raster, view, coarse_pixels(&view->camera), &block));
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(gpu, "soft/keep.comp", NULL, NULL),
-        .params = &block, .params_size = sizeof block,
-        .textures = {raster->blended},
-        .images = {{slots, 0, GL_WRITE_ONLY}},
-        .image_layers = {slot + 1},
-        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT};
-    orl_pixel_groups(slots->params.width, slots->params.height, d.groups);
-    orl_gpu_dispatch(gpu, &d);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "soft/keep.comp", NULL, NULL), ORL_PARAMS(block),
+        .textures = {raster->blended}, .images = {slots}, .layer = slot,
+        .size = {slots->params.width, slots->params.height}});
     return ORL_OK;
 }
 
@@ -59,12 +54,8 @@ static enum orl_result keep(const struct frame *frame, size_t photo)
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
-    struct orl_tex_params params = photos->color_params;
     const struct orl_view view = {state->color_camera, photos->scene->photos[photo].view.cam_from_world};
-    params.format = GL_R8;
-    params.tag = "soft splats in photographs";
-    if (!photos->soft)
-        ORL_TRY(orl_tex_create(frame->gpu, &params, &photos->soft));
+    ORL_TRY(orl_photos_array(frame->gpu, photos, GL_R8, "soft splats in photographs", &photos->soft));
     ORL_TRY(orl_soft_layer_keep(frame->gpu, &frame->paint->soft.raster, &view, photos->soft, state->slot));
     orl_tex_make_mipmaps(photos->soft, state->slot);
     state->has_soft = true;
@@ -119,12 +110,6 @@ static double coarse_pixels_of_view(const struct frame *frame)
     return sum / (double)frame->chosen_count * frame->view->camera.fx;
 }
 
-static void dispatch(const struct frame *frame, struct orl_dispatch d)
-{
-    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
-}
-
 enum orl_result orl_soft_layer_mix(const struct frame *frame)
 {
     struct soft_layer *layer = &frame->paint->soft;
@@ -132,20 +117,17 @@ enum orl_result orl_soft_layer_mix(const struct frame *frame)
     ORL_TRY(draw(frame->gpu, &layer->raster, frame->view, coarse_pixels_of_view(frame), &block));
     block.correct_share = frame->params->soft;
     block.mix_share = frame->params->soft_mix;
-    dispatch(frame, (struct orl_dispatch){
-        .prog = orl_prog_get(frame->gpu, "soft/compare.comp", NULL, NULL),
-        .params = &block, .params_size = sizeof block,
-        .textures = {layer->raster.blended},
-        .images = {{layer->gathered, 0, GL_READ_ONLY}, {layer->differs, 0, GL_WRITE_ONLY}},
-        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT});
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "soft/compare.comp", NULL, NULL), ORL_PARAMS(block),
+        .textures = {layer->raster.blended}, .images = {layer->gathered, layer->differs},
+        .size = {frame->surface.width, frame->surface.height}});
     orl_tex_make_mipmaps(layer->differs, 0);
     const char *specks = orl_edges_find_specks(frame) ? "SPECKS" : NULL;
-    dispatch(frame, (struct orl_dispatch){
-        .prog = orl_prog_get(frame->gpu, "soft/mix.comp", NULL, specks),
-        .params = &block, .params_size = sizeof block, .textures = {layer->differs},
-        .images = {[1] = {frame->picture, 0, GL_READ_WRITE}, {layer->raster.blended, 0, GL_READ_ONLY},
-                   {specks ? frame->paint->edges.painted : NULL, 0, GL_READ_WRITE}},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT});
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "soft/mix.comp", NULL, specks), ORL_PARAMS(block),
+        .textures = {layer->differs},
+        .images = {[1] = frame->picture, layer->raster.blended, frame->paint->edges.painted},
+        .size = {frame->surface.width, frame->surface.height}});
     return ORL_OK;
 }
 

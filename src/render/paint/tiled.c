@@ -18,25 +18,20 @@ static const char *rest_define(const struct frame *frame)
 static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
 {
     char defines[64];
-    struct gather_slots slots;
-    orl_gather_slots(frame, &slots);
     // The number of photographs is part of the program, so that none is sampled in vain.
     bool specks = orl_edges_find_specks(frame);
     snprintf(defines, sizeof defines, "%s%s%sKEPT %d", rest_define(frame), specks ? "SPECKS 1\n" : "",
              orl_soft_layer_shows(frame) ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
-    d.prog = orl_gather_prog(frame, "gather/tiled.comp", slots.slots, defines);
-    d.images[1] = (struct orl_image_binding){frame->picture, 0, GL_WRITE_ONLY};
-    d.images[2] = (struct orl_image_binding){frame->paint->fill.level[0], 0, GL_WRITE_ONLY};
-    d.images[3] = (struct orl_image_binding){frame->paint->fill.guesses, 0, GL_WRITE_ONLY};
-    if (specks)
-        d.images[5] = (struct orl_image_binding){frame->paint->edges.painted, 0, GL_WRITE_ONLY};
-    if (orl_soft_layer_shows(frame)) {
-        d.textures[ORL_PHOTO_SOFT] = frame->photos->soft;
-        d.images[4] = (struct orl_image_binding){frame->paint->soft.gathered, 0, GL_WRITE_ONLY};
-    }
-    d.barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT;
+    d.prog = orl_gather_prog(frame, "gather/tiled.comp", defines);
+    d.images[1] = frame->picture;
+    d.images[2] = frame->paint->fill.level[0];
+    d.images[3] = frame->paint->fill.guesses;
+    d.images[4] = frame->paint->soft.gathered;
+    d.images[5] = frame->paint->edges.painted;
+    d.textures[ORL_PHOTO_SOFT] = frame->photos->soft;
     // One invocation handles 2x2 pixels.
-    orl_pixel_groups((frame->surface.width + 1) / 2, (frame->surface.height + 1) / 2, d.groups);
+    d.size[0] = (frame->surface.width + 1) / 2;
+    d.size[1] = (frame->surface.height + 1) / 2;
     orl_tex_clear(frame->paint->fill.guesses);
     orl_gpu_pass(frame->gpu, "gather", &d);
 }
@@ -46,8 +41,8 @@ static enum orl_result paint_chosen(const struct frame *frame)
     struct gather *g = &frame->paint->gather;
     size_t across = orl_groups((size_t)frame->surface.width, orl_tile_side(frame));
     size_t down = orl_groups((size_t)frame->surface.height, orl_tile_side(frame));
-    ORL_TRY(orl_make_room(frame->gpu, "photographs of tiles", across * down * ORL_CANDIDATES * sizeof(int),
-                          &g->tile_lists));
+    ORL_TRY(orl_buf_fit(frame->gpu, ORL_OWNER_FRAME, "photographs of tiles",
+                        across * down * ORL_CANDIDATES * sizeof(int), 0, &g->tile_lists));
     if (frame->chosen_count == 0 && !frame->progressive) {
         orl_tex_clear(frame->picture);
         if (orl_edges_find_specks(frame))
@@ -55,16 +50,13 @@ static enum orl_result paint_chosen(const struct frame *frame)
         return ORL_OK;
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);
-    struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", NULL,
-                                                     rest_define(frame)),
-                             .params = &block, .params_size = sizeof block,
+    struct orl_dispatch d = {.prog = orl_gather_prog(frame, "gather/choose.comp", rest_define(frame)),
+                             ORL_PARAMS(block),
                              .bufs = {[1] = g->tile_lists},
                              .textures = {frame->photos->color, frame->photos->depth,
                                           [ORL_PHOTO_CHROMA] = frame->photos->chroma},
-                             .images = {{frame->surface.depth, 0, GL_READ_ONLY},
-                                        [PHOTO_ROWS] = {g->photo_rows, 0, GL_READ_ONLY}},
-                             .groups = {orl_groups(across, 8), orl_groups(down, 8)},
-                             .barrier = GL_SHADER_STORAGE_BARRIER_BIT};
+                             .images = {frame->surface.depth, [PHOTO_ROWS] = &g->photos->texels},
+                             .size = {(int)across, (int)down}};
     orl_gpu_pass(frame->gpu, "choose", &d);
     if (orl_guess_applies(frame))
         orl_guess_depth(frame, &d, &block);

@@ -116,7 +116,7 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
     block.billboard_half = (float)(0.5 * orl_billboard_width(state));
     const size_t stride = sizeof(struct billboard);
     const struct orl_raster raster = {
-        .prog = program(frame), .params = &block, .params_size = sizeof block,
+        .prog = program(frame), ORL_PARAMS(block),
         .inputs = {{billboards, offsetof(struct billboard, centre), stride, 3, GL_FLOAT, true},
                    {billboards, offsetof(struct billboard, photos), stride, 1, GL_UNSIGNED_INT,
                     true},
@@ -124,9 +124,8 @@ static void draw(const struct frame *frame, const struct voxel_state *state,
         .count = 6, .instances = count, .over = true,
         .textures = {frame->photos->color, NULL, frame->photos->mask,
                      [ORL_PHOTO_CHROMA] = frame->photos->chroma},
-        .images = {[PHOTO_ROWS] = {frame->paint->gather.photo_rows, 0, GL_READ_ONLY}},
-        .targets = {frame->picture},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT};
+        .images = {[PHOTO_ROWS] = &frame->paint->gather.photos->texels},
+        .targets = {frame->picture}};
     if (count)
         orl_gpu_raster(frame->gpu, &raster);
 }
@@ -195,7 +194,7 @@ static enum orl_result paint(struct frame *frame)
     orl_pass_begin(frame->gpu, "billboards");
     size_t drawn = list(frame, state, ranked, frame->chosen_count, all);
     result = orl_buf_create(frame->gpu, ORL_OWNER_FRAME, "billboards",
-                            (drawn ? drawn : 1) * sizeof *all, all, &buf);
+                            (drawn ? drawn : 1) * sizeof *all, all, 0, &buf);
     if (result == ORL_OK)
         draw(frame, state, buf, drawn);
     orl_pass_end(frame->gpu);

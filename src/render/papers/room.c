@@ -36,28 +36,19 @@ static void project(const struct frame *frame, struct orl_tex *room, bool backgr
                     size_t count)
 {
     struct gather_block block = orl_gather_prepare(frame, first, count);
-    struct gather_slots slots;
     char defines[32];
     place(frame, &block);
-    orl_gather_slots(frame, &slots);
-    if (frame->radiance)
-        orl_gather_set_slot(&slots, "combine", "gather/radiance/mean.glsl");
     // Behind layers the room shows through.
     snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s",
              frame->params->paint->layers ? 2 : 1,
              frame->scene->room.known ? "" : "SHELL 1\n");
-    struct orl_dispatch d = {
-        .prog = orl_gather_prog(frame, "gather/gather.comp", slots.slots, defines),
-        .params = &block, .params_size = sizeof block,
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_gather_prog(frame, "gather/gather.comp", defines), ORL_PARAMS(block),
         .textures = {backgrounds ? frame->photos->background : frame->photos->color,
                      frame->photos->depth, [ORL_PHOTO_CHROMA] = frame->photos->chroma},
-        .images = {{frame->surface.depth, 0, GL_READ_ONLY},
-                   {room, 0, GL_READ_WRITE},
-                   {frame->paint->states[0], 0, GL_READ_WRITE},
-                   [PHOTO_ROWS] = {frame->paint->gather.photo_rows, 0, GL_READ_ONLY}},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(frame->view->camera.width, frame->view->camera.height, d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
+        .images = {frame->surface.depth, room, frame->paint->states[0],
+                   [PHOTO_ROWS] = &frame->paint->gather.photos->texels},
+        .size = {frame->view->camera.width, frame->view->camera.height}});
 }
 
 // Makes `count` photographs ready to be projected.
@@ -96,13 +87,14 @@ static enum orl_result keep_present(struct frame *frame, bool backgrounds, size_
 
 enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *absent)
 {
+    static const struct orl_combine mean = {"mean", .sweeps = 1, .radiance = "gather/radiance/mean.glsl"};
     struct orl_render_params params = *frame->params;
     struct frame walls = *frame; // the frame that the room is painted as
     bool backgrounds = orl_photos_backgrounds(frame->photos);
     walls.params = &params;
     walls.reads_chroma = frame->reads_chroma && !backgrounds;
     snprintf(params.weight, sizeof params.weight, "equal");
-    params.combine = &orl_combine_mean;
+    params.combine = &mean;
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
     *absent = 0;
@@ -129,13 +121,8 @@ void orl_room_show(const struct frame *frame, const struct room *room)
 {
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
                                 .layers = frame->params->paint->layers};
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(frame->gpu, "fill/room.comp", NULL,
-                             frame->finishes ? "FINISHED" : NULL),
-        .params = &block, .params_size = sizeof block,
-        .images = {{frame->picture, 0, GL_READ_WRITE}, {room->picture, 0, GL_READ_ONLY},
-                   {frame->surface.depth, 0, GL_READ_ONLY}},
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(frame->surface.width, frame->surface.height, d.groups);
-    orl_gpu_pass(frame->gpu, "room", &d);
+    orl_gpu_pass(frame->gpu, "room", &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "fill/room.comp", NULL, frame->finishes ? "FINISHED" : NULL),
+        ORL_PARAMS(block), .images = {frame->picture, room->picture, frame->surface.depth},
+        .size = {frame->surface.width, frame->surface.height}});
 }

@@ -23,14 +23,10 @@ static void put(const struct frame *frame, size_t photo, const int kept[2], stru
     struct depth_map_block block = {
         .kept_size = {kept[0], kept[1]},
         .occluder_depth = OCCLUDER_DISTANCE * (float)photos->scene->photo_distance};
-    struct orl_dispatch d = {
-        .prog = orl_prog_get(frame->gpu, "proxy/photo_occluders.comp", NULL, NULL),
-        .params = &block, .params_size = sizeof block, .textures = {mask},
-        .images = {{photos->depth, 0, GL_WRITE_ONLY}},
-        .image_layers = {photos->states[photo].slot + 1},
-        .barrier = GL_TEXTURE_FETCH_BARRIER_BIT};
-    orl_pixel_groups(kept[0], kept[1], d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, "proxy/photo_occluders.comp", NULL, NULL), ORL_PARAMS(block),
+        .textures = {mask}, .images = {photos->depth}, .layer = photos->states[photo].slot,
+        .size = {kept[0], kept[1]}});
 }
 
 enum orl_result orl_occluders_put(const struct frame *frame, size_t photo, const int kept[2])

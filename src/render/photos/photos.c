@@ -72,29 +72,28 @@ static struct slot_size slot_size(const struct photos *photos, int divide)
     return size;
 }
 
-// Colour of all slots as textures: of textures=ycc, `chroma` is the second one.
-static struct orl_tex_params color_params(const struct photos *photos,
-                                          const struct slot_size *size, bool chroma)
+// A texture of all slots.
+static struct orl_tex_params array_params(const struct slot_size *size, int layers, GLenum format, const char *tag)
 {
+    bool chroma = format == GL_COMPRESSED_RG_RGTC2; // of textures=ycc
     int width = chroma ? (size->width + 1) / 2 : size->width;
     int height = chroma ? (size->height + 1) / 2 : size->height;
-    return (struct orl_tex_params){
-        .width = width, .height = height, .layers = photos->slot_count,
-        .levels = orl_mip_levels(width, height),
-        .format = chroma ? GL_COMPRESSED_RG_RGTC2 : photos->format, .linear = true,
-        .owner = ORL_OWNER_PHOTOGRAPHS, .tag = chroma ? "photograph chroma" : "photographs"};
+    return (struct orl_tex_params){.width = width, .height = height, .layers = layers,
+                                   .levels = orl_mip_levels(width, height), .format = format, .linear = true,
+                                   .owner = ORL_OWNER_PHOTOGRAPHS, .tag = tag};
 }
 
-static bool has_chroma(const struct photos *photos)
+static bool has_chroma(GLenum format)
 {
-    return photos->format == GL_COMPRESSED_RED_RGTC1;
+    return format == GL_COMPRESSED_RED_RGTC1;
 }
 
-static size_t color_bytes(const struct photos *photos, const struct slot_size *size)
+// Of a slot, with its chroma.
+static size_t color_bytes(const struct slot_size *size, GLenum format)
 {
-    const struct orl_tex_params color = color_params(photos, size, false);
-    const struct orl_tex_params chroma = color_params(photos, size, true);
-    return orl_tex_layer_bytes(&color) + (has_chroma(photos) ? orl_tex_layer_bytes(&chroma) : 0);
+    const struct orl_tex_params color = array_params(size, 1, format, NULL);
+    const struct orl_tex_params chroma = array_params(size, 1, GL_COMPRESSED_RG_RGTC2, NULL);
+    return orl_tex_layer_bytes(&color) + (has_chroma(format) ? orl_tex_layer_bytes(&chroma) : 0);
 }
 
 static bool is_compressed(const struct photos *photos)
@@ -105,20 +104,18 @@ static bool is_compressed(const struct photos *photos)
 // The part of the budget that is available for slots.
 static size_t slot_budget(const struct photos *photos, const struct slot_size *size, size_t budget)
 {
-    struct photos plain = {.format = GL_RGBA8};
-    size_t loading = is_compressed(photos) ? color_bytes(&plain, size) : 0;
+    size_t loading = is_compressed(photos) ? color_bytes(size, GL_RGBA8) : 0;
     return budget > loading ? budget - loading : 1;
 }
 
 // Of everything that a method may ask for.
 static size_t slot_bytes(const struct photos *photos, const struct slot_size *size)
 {
-    struct photos byte = {.format = GL_R8}, background = {.format = GL_RGBA8};
-    return color_bytes(photos, size) +
+    return color_bytes(size, photos->format) +
            (size_t)size->depth_width * (size_t)size->depth_height *
                (photos->scene->defaults.depth_half ? 2 : 4) +
-           (photos->silhouettes + photos->soft_splats) * color_bytes(&byte, size) +
-           (photos->places ? color_bytes(&background, size) : 0);
+           (photos->silhouettes + photos->soft_splats) * color_bytes(size, GL_R8) +
+           (photos->places ? color_bytes(size, GL_RGBA8) : 0);
 }
 
 static bool fits_all(const struct photos *photos, const struct slot_size *size, int count,
@@ -154,7 +151,7 @@ static struct slot_size plan(struct orl_gpu *gpu, size_t budget, enum orl_textur
     }
     size_t fits = budget ? slot_budget(photos, &size, budget) / slot_bytes(photos, &size)
                          : (size_t)count;
-    size_t array_fits = ARRAY_BYTES_MAX / color_bytes(photos, &size);
+    size_t array_fits = ARRAY_BYTES_MAX / color_bytes(&size, photos->format);
     fits = fits < array_fits ? fits : array_fits;
     fits = fits < (size_t)layers_max ? fits : (size_t)layers_max;
     fits = fits < (size_t)count ? fits : (size_t)count;
@@ -217,11 +214,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     photos->soft_splats = !photos->radiance && orl_path_is_file(ORL_PATH(scene->dir, ORL_SOFT_NAME));
     photos->divide = params->photo_divide > 1 ? params->photo_divide : 1;
     enum orl_textures textures = ORL_TEXTURES_AUTO;
-    enum orl_result result = orl_textures_choose(log, scene, params, &textures);
-    if (result != ORL_OK) {
-        orl_photos_finish(gpu, photos);
-        return result;
-    }
+    ORL_TRY(orl_textures_choose(log, scene, params, &textures));
     struct slot_size size = plan(gpu, budget_bytes, textures, photos);
     for (size_t i = 0; i < scene->photo_count; i++) {
         struct photo_state *state = &photos->states[i];
@@ -229,27 +222,15 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
         state->depth_camera = depth_camera_of(&state->color_camera, scene->defaults.depth_divide);
         state->drawn_camera = depth_camera_of(&state->color_camera, 1);
     }
-    photos->color_params = color_params(photos, &size, false);
+    photos->color_params = array_params(&size, photos->slot_count, photos->format, "photographs");
     photos->depth_params = (struct orl_tex_params){
         .width = size.depth_width, .height = size.depth_height, .layers = photos->slot_count,
         .format = scene->defaults.depth_half ? GL_R16F : GL_R32F,
         .owner = ORL_OWNER_PHOTOGRAPHS, .tag = "photograph depth"};
-    result = orl_photos_ready(gpu, photos);
-    if (result != ORL_OK)
-        orl_photos_finish(gpu, photos);
-    return result;
-}
-
-enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos)
-{
-    const struct slot_size size = {.width = photos->color_params.width,
-                                   .height = photos->color_params.height};
-    const struct orl_tex_params chroma = color_params(photos, &size, true);
-    if (!photos->color)
-        ORL_TRY(orl_tex_create(gpu, &photos->color_params, &photos->color));
-    if (has_chroma(photos) && !photos->chroma)
-        ORL_TRY(orl_tex_create(gpu, &chroma, &photos->chroma));
-    return ORL_OK;
+    const struct orl_tex_params chroma =
+        array_params(&size, photos->slot_count, GL_COMPRESSED_RG_RGTC2, "photograph chroma");
+    ORL_TRY(orl_tex_create(gpu, &photos->color_params, &photos->color));
+    return has_chroma(photos->format) ? orl_tex_create(gpu, &chroma, &photos->chroma) : ORL_OK;
 }
 
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos)
@@ -399,7 +380,6 @@ static void drop_loading(struct orl_gpu *gpu, struct photos *photos)
 enum orl_result orl_photos_put(struct orl_gpu *gpu, struct photos *photos, size_t index,
                                struct orl_image *image)
 {
-    ORL_TRY(orl_photos_ready(gpu, photos));
     if (photos->radiance)
         ORL_TRY(make_radiance(orl_gpu_log(gpu), photos, index, image));
     if (is_compressed(photos))
@@ -459,15 +439,9 @@ static void write_depth(const struct frame *frame, const struct surface *surface
                                     .kept_size = {kept[0], kept[1]},
                                     // Twice what the shadow test allows.
                                     .line_offset = 1 + 2 * frame->params->depth_tolerance};
-    struct orl_dispatch d = {.prog = orl_prog_get(frame->gpu, file, NULL, NULL),
-                             .params = &block, .params_size = sizeof block,
-                             .images = {{surface->depth, 0, GL_READ_ONLY},
-                                        {frame->photos->depth, 0, GL_WRITE_ONLY}},
-                             .image_layers = {[1] = slot + 1},
-                             .barrier = GL_TEXTURE_FETCH_BARRIER_BIT |
-                                        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(kept[0], kept[1], d.groups);
-    orl_gpu_dispatch(frame->gpu, &d);
+    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(frame->gpu, file, NULL, NULL), ORL_PARAMS(block),
+        .images = {surface->depth, frame->photos->depth}, .layer = slot, .size = {kept[0], kept[1]}});
 }
 
 uint64_t orl_photos_depth_key(const struct frame *frame)
@@ -520,6 +494,15 @@ enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool
     return ORL_OK;
 }
 
+enum orl_result orl_photos_array(struct orl_gpu *gpu, const struct photos *photos, GLenum format, const char *tag,
+                                 struct orl_tex **tex)
+{
+    struct orl_tex_params params = photos->color_params;
+    params.format = format;
+    params.tag = tag;
+    return *tex ? ORL_OK : orl_tex_create(gpu, &params, tex);
+}
+
 // --- what lies behind the subject ---
 
 bool orl_photos_backgrounds(const struct photos *photos)
@@ -542,10 +525,7 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
-    struct orl_tex_params params = photos->color_params;
     struct orl_image whole = {0}, image = {0};
-    params.format = photos->radiance ? GL_SRGB8_ALPHA8 : GL_RGBA8; // radiance is read without decoding
-    params.tag = "backgrounds";
     give_slot(photos, state);
     if (orl_photos_has_background(photos, photo))
         return ORL_OK;
@@ -556,8 +536,9 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
             orl_array(log, (size_t)photos->slot_count, sizeof *photos->background_of);
     if (result == ORL_OK && !photos->background_of)
         result = ORL_ERR_MEMORY;
-    if (result == ORL_OK && !photos->background)
-        result = orl_tex_create(frame->gpu, &params, &photos->background);
+    // Radiance is read without decoding.
+    ORL_THEN(result, orl_photos_array(frame->gpu, photos, photos->radiance ? GL_SRGB8_ALPHA8 : GL_RGBA8,
+                                      "backgrounds", &photos->background));
     ORL_THEN(result, orl_bridge_resize(log, &whole, state->color_camera.width, state->color_camera.height, &image));
     if (result == ORL_OK) {
         write_pixels(&image, photos->background, state->slot);
@@ -619,14 +600,10 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
 {
     struct photos *photos = frame->photos;
     struct photo_state *state = &photos->states[photo];
-    struct orl_tex_params params = photos->color_params;
     struct orl_image alpha = {0};
-    params.format = GL_R8;
-    params.tag = "photograph masks";
     if (state->has_mask)
         return ORL_OK;
-    enum orl_result result =
-        photos->mask ? ORL_OK : orl_tex_create(frame->gpu, &params, &photos->mask);
+    enum orl_result result = orl_photos_array(frame->gpu, photos, GL_R8, "photograph masks", &photos->mask);
     ORL_THEN(result, make_alpha(frame, photo, &alpha));
     if (result == ORL_OK) {
         orl_tex_write_layer(photos->mask, state->slot, alpha.width, alpha.height, GL_RED,

@@ -25,8 +25,7 @@ struct photo_state {
 struct photos {
     const struct orl_scene *scene;
     struct photo_state *states; // per photograph of the scene
-    struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence; NULL: no
-                                // frame was drawn
+    struct orl_tex *color;      // mipmapped: sRGB, or radiance * confidence, confidence
     struct orl_tex *chroma;     // of textures=ycc, whose color is luma: Cb, Cr; else NULL
     struct orl_tex_params color_params; // of color
     GLenum format;              // of color
@@ -68,15 +67,16 @@ GLenum orl_textures_format(const struct orl_gpu *gpu, bool radiance, enum orl_te
 enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *scene,
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos);
-void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos);
+void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos); // also after a failure of init
 // Evicts all photographs if the scene shows another time step than they do.
 void orl_photos_follow_time_step(struct photos *photos);
-// Makes the textures of colours if they are not there.
-enum orl_result orl_photos_ready(struct orl_gpu *gpu, struct photos *photos);
 // Makes a photograph's colour resident, and its depth if asked for, drawn
 // by the frame's proxy with the frame's parameters. Evicts the least recently used photograph
 // if all slots are taken.
 enum orl_result orl_photos_require(const struct frame *frame, size_t photo, bool depth);
+// Makes a texture of the slots, of the photographs' size, unless it is there.
+enum orl_result orl_photos_array(struct orl_gpu *gpu, const struct photos *photos, GLenum format, const char *tag,
+                                 struct orl_tex **tex);
 // Brings the mask of a resident photograph to the device: 1 within the subject, 0.5 on its boundary
 // (Goldluecke 2003, section 3), 1 throughout where the photograph has none.
 enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo);

@@ -22,45 +22,23 @@ struct host_chunk {
     size_t block_count;
 };
 
-struct buffer {
-    const char *tag;
-    size_t size;
-    const void *data;
-    struct orl_buf **buf;
-    GLenum format;
-    struct orl_tex **texels;
-};
-
-static enum orl_result make_buffer(struct orl_gpu *gpu, const struct buffer *b)
-{
-    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, b->tag, b->size, b->data, b->buf));
-    return orl_tex_view_buffer(gpu, *b->buf, b->format, b->texels);
-}
-
 static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
                                     const struct host_chunk *host)
 {
     size_t blocks = host->block_count;
-    const struct buffer rows[] = {
-        {"points", blocks * BLOCK * 8, host->points, &chunk->points, GL_RG32UI,
-         &chunk->point_texels},
-        {"point blocks", blocks * sizeof *host->blocks, host->blocks, &chunk->blocks, GL_RGBA32F,
-         &chunk->block_texels},
-        {"point list", blocks * 4, NULL, &chunk->list, GL_R32UI, &chunk->list_texels},
-        {"point list arguments", 16, NULL, &chunk->args, GL_R32UI, &chunk->arg_texels},
-    };
-    for (size_t i = 0; i < ORL_COUNT(rows); i++)
-        ORL_TRY(make_buffer(gpu, &rows[i]));
-    return ORL_OK;
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "points", blocks * BLOCK * 8, host->points, GL_RG32UI, &chunk->points));
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "point blocks", blocks * sizeof *host->blocks, host->blocks,
+                           GL_RGBA32F, &chunk->blocks));
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "point list", blocks * 4, NULL, GL_R32UI, &chunk->list));
+    return orl_buf_create(gpu, ORL_OWNER_POINTS, "point list arguments", 16, NULL, GL_R32UI, &chunk->args);
 }
 
 // data: sRGB of each point of the chunk.
 static enum orl_result make_colors(struct orl_gpu *gpu, struct point_chunk *chunk,
                                    uint8_t (*data)[3])
 {
-    const struct buffer row = {"point colours", (size_t)chunk->count * sizeof *data, data,
-                               &chunk->colors, GL_R8UI, &chunk->color_texels};
-    return make_buffer(gpu, &row);
+    return orl_buf_create(gpu, ORL_OWNER_POINTS, "point colours", (size_t)chunk->count * sizeof *data, data, GL_R8UI,
+                          &chunk->colors);
 }
 
 // order: BLOCK entries of a block.
@@ -155,12 +133,12 @@ enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
 {
     uint32_t *order = NULL;
     size_t count = 0;
-    if (cloud->chunks[cloud->chunk_count - 1].color_texels)
+    if (cloud->chunks[cloud->chunk_count - 1].colors)
         return ORL_OK;
     enum orl_result result = orl_cloud_order(orl_gpu_log(gpu), cloud->points, &order, &count);
     for (size_t i = 0; result == ORL_OK && i < cloud->chunk_count; i++) {
         struct point_chunk *chunk = &cloud->chunks[i];
-        if (!chunk->color_texels) // the memory may have ended before
+        if (!chunk->colors) // the memory may have ended before
             result = upload_colors(gpu, cloud->points, order + chunk->first, chunk);
     }
     free(order);
@@ -183,11 +161,7 @@ void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud)
 {
     for (size_t i = 0; i < cloud->chunk_count; i++) {
         struct point_chunk *c = &cloud->chunks[i];
-        struct orl_tex **const views[] = {&c->point_texels, &c->color_texels, &c->block_texels,
-                                          &c->list_texels, &c->arg_texels};
         struct orl_buf **const bufs[] = {&c->points, &c->colors, &c->blocks, &c->list, &c->args};
-        for (size_t k = 0; k < ORL_COUNT(views); k++)
-            orl_tex_destroy(gpu, views[k]);
         for (size_t k = 0; k < ORL_COUNT(bufs); k++)
             orl_buf_destroy(gpu, bufs[k]);
     }
@@ -204,15 +178,8 @@ void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         block->point_count = chunk->count;
         block->first_point = chunk->first;
         orl_buf_write(chunk->args, 0, sizeof nothing, nothing);
-        struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/splat_cull.comp", NULL, NULL),
-                                 .params = block, .params_size = sizeof *block,
-                                 .bufs = {chunk->args, chunk->list},
-                                 .images = {{chunk->block_texels, 0, GL_READ_ONLY}},
-                                 .groups = {orl_groups((size_t)chunk->block_count,
-                                                       ORL_POINT_GROUP)},
-                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                            GL_SHADER_STORAGE_BARRIER_BIT |
-                                            GL_COMMAND_BARRIER_BIT};
-        orl_gpu_dispatch(gpu, &d);
+        orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+            .prog = orl_prog_get(gpu, "proxy/splat_cull.comp", NULL, NULL), ORL_PARAMS(*block),
+            .bufs = {chunk->args, chunk->list}, .images = {&chunk->blocks->texels}, .size = {chunk->block_count}});
     }
 }

@@ -6,13 +6,12 @@
 #include "shared/render_blocks.h"
 
 // A part of the points, small enough that no buffer exceeds the device's limits. It consists of
-// blocks of ORL_BLOCK_POINTS points that are close together. Each buffer has a view as texels.
+// blocks of ORL_BLOCK_POINTS points that are close together. Each buffer has texels.
 struct point_chunk {
-    struct orl_buf *points, *colors, *blocks, *list, *args;
-    struct orl_tex *point_texels; // RG32UI: struct point_code's geometry
-    struct orl_tex *color_texels; // R8UI, three for each point; NULL until they are asked for
-    struct orl_tex *block_texels; // RGBA32F, ORL_BLOCK_VEC4S per block: see there
-    struct orl_tex *list_texels, *arg_texels; // R32UI: blocks that are drawn, and how many, of the last cull
+    struct orl_buf *points;      // RG32UI: struct point_code's geometry
+    struct orl_buf *colors;      // R8UI, three for each point; NULL until they are asked for
+    struct orl_buf *blocks;      // RGBA32F, ORL_BLOCK_VEC4S per block: see there
+    struct orl_buf *list, *args; // R32UI: blocks that are drawn, and how many, of the last cull
     int first, count, block_count;    // count: includes the padding to whole blocks
 };
 

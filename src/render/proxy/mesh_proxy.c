@@ -8,7 +8,6 @@
 #include "gpu/raster.h"
 #include "render/frame/frame.h"
 #include "render/proxy/mesh_proxy.h"
-#include "render/proxy/raster_target.h"
 #include "shared/render_blocks.h"
 
 void orl_mesh_vertices(const void *handle, const struct orl_scene *scene,
@@ -32,7 +31,7 @@ static enum orl_result upload_colors(struct orl_gpu *gpu, struct mesh_state *sta
         memcpy(padded[i], mesh->color[i], sizeof *mesh->color);
     enum orl_result result =
         orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh colours",
-                       mesh->vertex_count * sizeof *padded, padded, &state->colors);
+                       mesh->vertex_count * sizeof *padded, padded, 0, &state->colors);
     free(padded);
     return result;
 }
@@ -48,24 +47,20 @@ enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *st
             state->high[k] = fmaxf(state->high[k], mesh->position[i][k]);
         }
     ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh vertices", mesh->vertex_count * sizeof *mesh->position,
-                           mesh->position, &state->vertices));
+                           mesh->position, 0, &state->vertices));
     ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "mesh triangles",
-                           mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle,
+                           mesh->triangle_count * sizeof *mesh->triangle, mesh->triangle, 0,
                            &state->indices));
     return upload_colors(gpu, state);
 }
 
-void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state)
+void orl_mesh_state_finish(struct orl_gpu *gpu, void *handle)
 {
+    struct mesh_state *state = handle;
     orl_buf_destroy(gpu, &state->vertices);
     orl_buf_destroy(gpu, &state->indices);
     orl_buf_destroy(gpu, &state->colors);
     orl_mesh_finish(&state->mesh);
-}
-
-static void finish(struct orl_gpu *gpu, void *state)
-{
-    orl_mesh_state_finish(gpu, state);
 }
 
 static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -113,65 +108,58 @@ void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view,
     *near = (float)fmax(0.999 * low, 1e-4 * (double)*far);
 }
 
-static struct mesh_block block_of(const struct mesh_state *state, const struct orl_view *view,
-                                  const struct raster_target *target)
+enum orl_result orl_raster_target_make(struct orl_gpu *gpu, const void *state, void *memory)
+{
+    struct raster_target *target = memory;
+    (void)state;
+    const struct orl_tex_row row = {"proxy depth test", GL_DEPTH_COMPONENT32F, &target->test};
+    return orl_tex_create_rows(gpu, target->surface.width, target->surface.height, &row, 1);
+}
+
+// Draws into two pictures, or with the colours of the vertices into one.
+static void draw_into(struct orl_gpu *gpu, const struct mesh_state *state, const struct orl_view *view,
+                      const struct raster_target *target, bool colors, const struct orl_tex *first,
+                      const struct orl_tex *second)
 {
     struct mesh_block block = {.view_size = {target->surface.width, target->surface.height}};
     orl_mesh_range(state, view, &block.depth_near, &block.depth_far);
     orl_set_pose(&view->cam_from_world, block.rotation, block.eye);
     orl_set_focal(&view->camera, block.focal);
-    return block;
+    const struct orl_raster raster = {
+        .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", colors ? "proxy/mesh_color.frag" : "proxy/mesh.frag",
+                                    colors ? "COLORS" : NULL),
+        ORL_PARAMS(block),
+        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3, .type = GL_FLOAT},
+                   {.buf = colors ? state->colors : NULL, .stride = 4, .components = 4, .type = GL_UNSIGNED_BYTE}},
+        .indices = state->indices, .count = 3 * state->mesh.triangle_count,
+        .targets = {first, second}, .depth = target->test,
+    };
+    orl_gpu_raster(gpu, &raster);
 }
 
-void orl_mesh_draw(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
+void orl_mesh_draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,
                    const struct orl_render_params *params, bool normals, void *memory)
 {
-    const struct mesh_state *state = handle;
     const struct raster_target *target = memory;
-    const struct mesh_block block = block_of(state, view, target);
     (void)params, (void)normals; // nothing to choose, and normals come along
-    const struct orl_raster raster = {
-        .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh.frag", NULL),
-        .params = &block, .params_size = sizeof block,
-        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
-                    .type = GL_FLOAT}},
-        .indices = state->indices, .count = 3 * state->mesh.triangle_count,
-        .targets = {target->surface.depth, target->surface.normal}, .depth = target->test,
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
-    };
     orl_pass_begin(gpu, "mesh");
-    orl_gpu_raster(gpu, &raster);
+    draw_into(gpu, state, view, target, false, target->surface.depth, target->surface.normal);
     orl_pass_end(gpu);
 }
 
 // Draws the mesh again, with the colours of its vertices. Without colours it paints nothing.
 static void color(struct orl_gpu *gpu, const void *handle, const struct orl_view *view,
-                  const void *memory, const struct paint_into *into)
+                  const void *target, const struct paint_into *into)
 {
     const struct mesh_state *state = handle;
-    const struct raster_target *target = memory;
-    const struct mesh_block block = block_of(state, view, target);
     // The pipeline clears the picture, so samples of photographs could not be kept.
-    if (!state->colors || into->only_unpainted)
-        return;
-    const struct orl_raster raster = {
-        .prog = orl_prog_get_raster(gpu, "proxy/mesh.vert", "proxy/mesh_color.frag", "COLORS"),
-        .params = &block, .params_size = sizeof block,
-        .inputs = {{.buf = state->vertices, .stride = 3 * sizeof(float), .components = 3,
-                    .type = GL_FLOAT},
-                   {.buf = state->colors, .stride = 4, .components = 4,
-                    .type = GL_UNSIGNED_BYTE}},
-        .indices = state->indices, .count = 3 * state->mesh.triangle_count,
-        .targets = {into->picture}, .depth = target->test,
-        .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT,
-    };
-    orl_gpu_raster(gpu, &raster);
+    if (state->colors && !into->only_unpainted)
+        draw_into(gpu, state, view, target, true, into->picture, NULL);
 }
 
 const struct orl_proxy_kind orl_proxy_mesh = {
     .name = "mesh", .state_size = sizeof(struct mesh_state), .init = init, .update = update,
-    .vertices = orl_mesh_vertices, .finish = finish,
+    .vertices = orl_mesh_vertices, .finish = orl_mesh_state_finish,
     .target_size = sizeof(struct raster_target), .make_target = orl_raster_target_make,
-    .finish_target = orl_raster_target_finish, .target_bytes = orl_raster_target_bytes,
     .draw = orl_mesh_draw, .color = color,
 };

@@ -5,6 +5,12 @@
 #include "render/proxy/proxy.h"
 #include "scene/mesh.h"
 
+// Target of a proxy that the graphics pipeline draws.
+struct raster_target {
+    struct surface surface;
+    struct orl_tex *test; // the depth test's own
+};
+
 // State of a proxy that is a mesh, or its first member.
 struct mesh_state {
     struct orl_mesh mesh; // owned
@@ -16,12 +22,13 @@ struct mesh_state {
 
 // Brings state->mesh, which has triangles, to the device and finds its bounding box.
 enum orl_result orl_mesh_state_upload(struct orl_gpu *gpu, struct mesh_state *state);
-void orl_mesh_state_finish(struct orl_gpu *gpu, struct mesh_state *state);
+void orl_mesh_state_finish(struct orl_gpu *gpu, void *state);
 // The range of depths before the camera that the bounding box takes, with a small margin (Li 2003,
 // 5.2.3: a tight range makes depth precise).
 void orl_mesh_range(const struct mesh_state *state, const struct orl_view *view, float *near,
                     float *far);
-// As struct orl_proxy_kind asks for them; targets are those of raster_target.h.
+// As struct orl_proxy_kind asks for them.
+enum orl_result orl_raster_target_make(struct orl_gpu *gpu, const void *state, void *target);
 void orl_mesh_vertices(const void *state, const struct orl_scene *scene,
                        const float (**vertices)[3], size_t *count);
 void orl_mesh_draw(struct orl_gpu *gpu, const void *state, const struct orl_view *view,

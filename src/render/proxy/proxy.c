@@ -87,9 +87,16 @@ enum orl_result orl_proxy_update(const struct frame *frame)
 
 static void free_target(struct orl_gpu *gpu, const struct orl_proxy_kind *kind, void **target)
 {
-    if (*target)
-        kind->finish_target(gpu, *target);
-    free(*target);
+    struct surface *surface = *target;
+    if (!surface)
+        return;
+    void *own = surface + 1;
+    const size_t count = (kind->target_size - sizeof *surface) / sizeof(struct orl_tex *);
+    for (size_t i = 0; i < count; i++)
+        orl_tex_destroy(gpu, (struct orl_tex **)own + i);
+    orl_tex_destroy(gpu, &surface->depth);
+    orl_tex_destroy(gpu, &surface->normal);
+    free(surface);
     *target = NULL;
 }
 
@@ -123,7 +130,10 @@ static enum orl_result resize(struct orl_gpu *gpu, const struct proxy *proxy, in
     ORL_TRY_MEMORY(surface);
     surface->width = width;
     surface->height = height;
-    enum orl_result result = proxy->kind->make_target(gpu, proxy->state, surface);
+    const struct orl_tex_row rows[] = {{"proxy depth", GL_R32F, &surface->depth},
+                                       {"proxy normal", GL_RGBA16F, &surface->normal}};
+    enum orl_result result = orl_tex_create_rows(gpu, width, height, rows, ORL_COUNT(rows));
+    ORL_THEN(result, proxy->kind->make_target(gpu, proxy->state, surface));
     if (result != ORL_OK)
         free_target(gpu, proxy->kind, target);
     return result;

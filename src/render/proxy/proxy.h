@@ -15,7 +15,7 @@ struct paint_into {
 };
 
 // One kind of proxy. `state`: its data on the device; `target`: its textures for one picture size, in a struct that
-// begins with the struct surface that is drawn.
+// consists of the struct surface that is drawn and of other textures.
 struct orl_proxy_kind {
     const char *name;
     size_t state_size;
@@ -30,11 +30,8 @@ struct orl_proxy_kind {
                      size_t *count);
     void (*finish)(struct orl_gpu *gpu, void *state); // also after a failure of init
     size_t target_size; // of the struct
-    // Creates the textures of a target, whose surface has its size and which is else zeros.
+    // Creates the other textures of a target, whose surface is made.
     enum orl_result (*make_target)(struct orl_gpu *gpu, const void *state, void *target);
-    void (*finish_target)(struct orl_gpu *gpu, void *target);
-    // Bytes that a target of this size takes.
-    size_t (*target_bytes)(const void *state, int width, int height);
     // Brings the data that `view` shows to the device. NULL: it is there.
     enum orl_result (*bring)(const void *state, const struct orl_view *view);
     // Draws the surface that `view` sees. Without `normals` the normal is left unchanged, which saves a tenth of a

@@ -37,9 +37,8 @@ static int pyramid_levels(int width, int height)
     return levels < PYRAMID_LEVELS_MAX ? levels : PYRAMID_LEVELS_MAX;
 }
 
-static size_t target_bytes(const void *state, int width, int height)
+size_t orl_splats_target_bytes(const struct cloud *cloud, int width, int height)
 {
-    const struct cloud *cloud = state;
     // Bytes per pixel: three words of splats, 8 bytes of level 0, depth, a normal, and 24
     // bytes of the coarser levels; four more words if there are several chunks.
     size_t chunks = cloud->chunk_count < 2 ? 0 : 16;
@@ -49,8 +48,8 @@ static size_t target_bytes(const void *state, int width, int height)
 // Each level is half as large as the one before, rounded up. Loads outside read as empty.
 static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
 {
-    int width = t->surface.width, height = t->surface.height;
-    for (int i = 1; i < t->levels; i++) {
+    int width = t->surface.width, height = t->surface.height, levels = pyramid_levels(width, height);
+    for (int i = 1; i < levels; i++) {
         width = (width + 1) / 2;
         height = (height + 1) / 2;
         struct orl_tex_params params = {.width = width, .height = height, .format = GL_RGBA32F,
@@ -62,38 +61,20 @@ static enum orl_result make_pyramid(struct orl_gpu *gpu, struct splat_target *t)
     return ORL_OK;
 }
 
-static void finish_target(struct orl_gpu *gpu, void *memory)
-{
-    struct splat_target *target = memory;
-    for (int i = 0; i < PYRAMID_LEVELS_MAX; i++) {
-        orl_tex_destroy(gpu, &target->surfel_a[i]);
-        orl_tex_destroy(gpu, &target->surfel_b[i]);
-    }
-    struct orl_tex **const textures[] = {
-        &target->splat_depth, &target->splat_index, &target->splat_layer, &target->splats,
-        &target->chunk_splats, &target->surface.depth, &target->surface.normal,
-    };
-    for (size_t i = 0; i < ORL_COUNT(textures); i++)
-        orl_tex_destroy(gpu, textures[i]);
-}
-
 static enum orl_result make_target(struct orl_gpu *gpu, const void *state, void *memory)
 {
     const struct cloud *cloud = state;
     struct splat_target *target = memory;
-    int width = target->surface.width, height = target->surface.height;
-    target->levels = pyramid_levels(width, height);
     const struct orl_tex_row rows[] = {
         {"splat depth", GL_R32UI, &target->splat_depth},
         {"splat index", GL_R32UI, &target->splat_index},
         {"splat layer", GL_R32UI, &target->splat_layer},
         {"splats", GL_RG32UI, &target->splats},
-        {"proxy depth", GL_R32F, &target->surface.depth},
-        {"proxy normal", GL_RGBA16F, &target->surface.normal},
         {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
     };
     ORL_TRY(make_pyramid(gpu, target));
-    return orl_tex_create_rows(gpu, width, height, rows, ORL_COUNT(rows) - (cloud->chunk_count > 1 ? 0 : 1));
+    return orl_tex_create_rows(gpu, target->surface.width, target->surface.height, rows,
+                               ORL_COUNT(rows) - (cloud->chunk_count > 1 ? 0 : 1));
 }
 
 // params: NULL if nothing is drawn.
@@ -125,18 +106,11 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
             const struct point_chunk *chunk = &cloud->chunks[i];
             block->point_count = chunk->count;
             block->first_point = chunk->first;
-            struct orl_dispatch d = {.prog = passes[pass], .params = block,
-                                     .params_size = sizeof *block,
-                                     .textures = {chunk->block_texels},
-                                     .images = {{chunk->point_texels, 0, GL_READ_ONLY},
-                                                {chunk->list_texels, 0, GL_READ_ONLY},
-                                                {chunk->arg_texels, 0, GL_READ_ONLY},
-                                                {t->splat_depth, 0, GL_READ_WRITE},
-                                                {t->splat_index, 0, GL_READ_WRITE},
-                                                {t->splat_layer, 0, GL_READ_WRITE}},
-                                     .indirect = chunk->args,
-                                     .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-            orl_gpu_dispatch(gpu, &d);
+            orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+                .prog = passes[pass], ORL_PARAMS(*block), .textures = {&chunk->blocks->texels},
+                .images = {&chunk->points->texels, &chunk->list->texels, &chunk->args->texels, t->splat_depth,
+                           t->splat_index, t->splat_layer},
+                .indirect = chunk->args});
         }
 }
 
@@ -152,19 +126,11 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         const struct point_chunk *chunk = &cloud->chunks[i];
         block->point_count = chunk->count;
         block->first_point = chunk->first;
-        struct orl_dispatch d = {.prog = prog, .params = block, .params_size = sizeof *block,
-                                 .textures = {chunk->block_texels},
-                                 .images = {{chunk->point_texels, 0, GL_READ_ONLY},
-                                            {t->splat_index, 0, GL_READ_ONLY},
-                                            {t->splat_layer, 0, GL_READ_ONLY},
-                                            {normals ? t->splats : t->surface.depth, 0, GL_WRITE_ONLY},
-                                            {t->surfel_a[1], 0, GL_WRITE_ONLY},
-                                            {t->surfel_b[1], 0, GL_WRITE_ONLY}},
-                                 .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-        if (chunks)
-            d.images[6] = (struct orl_image_binding){t->chunk_splats, 0, GL_READ_WRITE};
-        orl_pixel_groups(t->surfel_a[1]->params.width, t->surfel_a[1]->params.height, d.groups);
-        orl_gpu_dispatch(gpu, &d);
+        orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+            .prog = prog, ORL_PARAMS(*block), .textures = {&chunk->blocks->texels},
+            .images = {&chunk->points->texels, t->splat_index, t->splat_layer,
+                       normals ? t->splats : t->surface.depth, t->surfel_a[1], t->surfel_b[1], t->chunk_splats},
+            .size = {t->surfel_a[1]->params.width, t->surfel_a[1]->params.height}});
     }
 }
 
@@ -180,15 +146,10 @@ static void pull(struct orl_gpu *gpu, struct pyramid_block *block,
 {
     const struct orl_tex *coarse = t->surfel_a[level];
     set_level(block, coarse, level);
-    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/pull.comp", NULL, NULL),
-                             .params = block, .params_size = sizeof *block,
-                             .images = {{t->surfel_a[level - 1], 0, GL_READ_ONLY},
-                                        {t->surfel_b[level - 1], 0, GL_READ_ONLY},
-                                        {coarse, 0, GL_WRITE_ONLY},
-                                        {t->surfel_b[level], 0, GL_WRITE_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-    orl_pixel_groups(coarse->params.width, coarse->params.height, d.groups);
-    orl_gpu_dispatch(gpu, &d);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "proxy/pull.comp", NULL, NULL), ORL_PARAMS(*block),
+        .images = {t->surfel_a[level - 1], t->surfel_b[level - 1], coarse, t->surfel_b[level]},
+        .size = {coarse->params.width, coarse->params.height}});
 }
 
 // Pushes into `level` from the coarser one. Level 0 is written as depth, and as the normal if it is
@@ -196,36 +157,26 @@ static void pull(struct orl_gpu *gpu, struct pyramid_block *block,
 static void push(struct orl_gpu *gpu, struct pyramid_block *block,
                  struct splat_target *t, int level, bool normals)
 {
-    const struct orl_tex *coarse = t->surfel_a[level + 1];
     const char *defines = level ? NULL : normals ? "LAST\nNORMALS" : "LAST";
-    struct orl_dispatch d = {.prog = orl_prog_get(gpu, "proxy/push.comp", NULL, defines),
-                             .params = block, .params_size = sizeof *block,
-                             .images = {{coarse, 0, GL_READ_ONLY},
-                                        {t->surfel_b[level + 1], 0, GL_READ_ONLY}},
-                             .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
-                                        GL_TEXTURE_FETCH_BARRIER_BIT};
-    if (level) {
-        d.images[2] = (struct orl_image_binding){t->surfel_a[level], 0, GL_READ_WRITE};
-        d.images[3] = (struct orl_image_binding){t->surfel_b[level], 0, GL_WRITE_ONLY};
-    } else {
-        d.images[2] = (struct orl_image_binding){t->splats, 0, GL_READ_ONLY};
-        d.images[3] = (struct orl_image_binding){t->surface.depth, 0, GL_READ_WRITE};
-        d.images[4] = (struct orl_image_binding){t->surface.normal, 0, GL_WRITE_ONLY};
-    }
-    set_level(block, level ? t->surfel_a[level] : t->splats, level);
-    // One invocation handles one corner of the coarse level's pixels.
-    orl_pixel_groups(block->level_size[0] / 2 + 1, block->level_size[1] / 2 + 1, d.groups);
-    orl_gpu_dispatch(gpu, &d);
+    const struct orl_tex *written = level ? t->surfel_a[level] : t->splats;
+    set_level(block, written, level);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "proxy/push.comp", NULL, defines), ORL_PARAMS(*block),
+        .images = {t->surfel_a[level + 1], t->surfel_b[level + 1], written,
+                   level ? t->surfel_b[level] : t->surface.depth, t->surface.normal},
+        // One invocation handles one corner of the coarse level's pixels.
+        .size = {block->level_size[0] / 2 + 1, block->level_size[1] / 2 + 1}});
 }
 
 static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, float front_layer, bool normals,
                       struct splat_target *t)
 {
     struct pyramid_block block = {.front_layer = front_layer};
+    const int levels = pyramid_levels(t->surface.width, t->surface.height);
     orl_set_focal(&view->camera, block.camera);
-    for (int i = 2; i < t->levels; i++)
+    for (int i = 2; i < levels; i++)
         pull(gpu, &block, t, i);
-    for (int i = t->levels - 2; i >= 0; i--)
+    for (int i = levels - 2; i >= 0; i--)
         push(gpu, &block, t, i, normals);
 }
 
@@ -265,23 +216,16 @@ static void color(struct orl_gpu *gpu, const void *state, const struct orl_view 
         const struct point_chunk *chunk = &cloud->chunks[i];
         block.point_count = chunk->count;
         block.first_point = chunk->first;
-        struct orl_dispatch d = {
-            .prog = orl_prog_get(gpu, "proxy/points_color.comp", NULL, defines),
-            .params = &block, .params_size = sizeof block,
-            .images = {{chunk->color_texels, 0, GL_READ_ONLY},
-                       {t->splat_index, 0, GL_READ_ONLY},
-                       {t->surface.normal, 0, GL_READ_ONLY},
-                       {into->picture, 0, into->only_unpainted ? GL_READ_WRITE : GL_WRITE_ONLY},
-                       {into->seeds, 0, GL_READ_WRITE}},
-            .barrier = GL_SHADER_IMAGE_ACCESS_BARRIER_BIT};
-        // One invocation handles 2x2 pixels.
-        orl_pixel_groups((t->surface.width + 1) / 2, (t->surface.height + 1) / 2, d.groups);
-        orl_gpu_dispatch(gpu, &d);
+        orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+            .prog = orl_prog_get(gpu, "proxy/points_color.comp", NULL, defines), ORL_PARAMS(block),
+            .images = {&chunk->colors->texels, t->splat_index, t->surface.normal, into->picture, into->seeds},
+            // One invocation handles 2x2 pixels.
+            .size = {(t->surface.width + 1) / 2, (t->surface.height + 1) / 2}});
     }
 }
 
 const struct orl_proxy_kind orl_proxy_splats = {
     .name = "splats", .state_size = sizeof(struct cloud), .init = init, .vertices = vertices, .finish = finish,
-    .target_size = sizeof(struct splat_target), .make_target = make_target, .finish_target = finish_target,
-    .target_bytes = target_bytes, .bring = bring, .draw = draw, .bring_colors = bring_colors, .color = color,
+    .target_size = sizeof(struct splat_target), .make_target = make_target,
+    .bring = bring, .draw = draw, .bring_colors = bring_colors, .color = color,
 };

@@ -10,7 +10,6 @@ enum { PYRAMID_LEVELS_MAX = 16 }; // for pictures of up to 2^16 pixels in each d
 // The textures through which splats are drawn, for one picture size.
 struct splat_target {
     struct surface surface;
-    int levels;
     struct orl_tex *splat_depth;  // R32UI: bits of the nearest depth; all bits set: empty
     struct orl_tex *splat_index;  // R32UI: index of the nearest point; all bits set: empty
     struct orl_tex *splat_layer;  // R32UI: shaders/proxy/splat.glsl
@@ -20,5 +19,8 @@ struct splat_target {
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // levels from 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
 };
+
+// About the bytes that a target of this size takes.
+size_t orl_splats_target_bytes(const struct cloud *cloud, int width, int height);
 
 #endif
