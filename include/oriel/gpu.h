@@ -142,7 +142,7 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
 // rounded up. Oriel encodes them (gpu/compress.h). Alpha is lost. Waits for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;
-// Sets every channel of every layer of level 0 to 0.
+// Sets every channel of every layer of level 0 to 0, of formats that are not integers.
 void orl_tex_clear(struct orl_tex *tex);
 // Sets every texel of level 0 of a GL_R32UI texture to `word`.
 void orl_tex_fill(struct orl_tex *tex, uint32_t word);

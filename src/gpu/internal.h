@@ -82,12 +82,4 @@ void orl_gpu_free_queries(struct orl_gpu *gpu);
 // Adds objects and their bytes to those of their owner and tag; negative ones are taken away.
 void orl_gpu_count(struct orl_gpu *gpu, enum orl_owner owner, const char *tag, ptrdiff_t bytes, int objects);
 
-// resource.c: what the texels of a format take. Blocks of side x side texels have so many bytes.
-struct texel_format {
-    GLenum format;
-    unsigned char bytes, side;
-    bool integer;
-};
-const struct texel_format *orl_texel_format(GLenum format);
-
 #endif

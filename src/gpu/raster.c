@@ -47,13 +47,9 @@ static bool bind_targets(struct orl_gpu *gpu, const struct orl_raster *r,
 static void clear_targets(const struct orl_gpu *gpu, const struct orl_raster *r)
 {
     static const float zero[4] = {0}, farthest = 1;
-    static const GLuint none[4] = {0};
-    for (GLint i = 0; i < ORL_RASTER_TARGETS_MAX; i++) {
-        if (r->targets[i] && orl_texel_format(r->targets[i]->params.format)->integer)
-            glClearNamedFramebufferuiv(gpu->framebuffer, GL_COLOR, i, none);
-        else if (r->targets[i])
+    for (GLint i = 0; i < ORL_RASTER_TARGETS_MAX; i++)
+        if (r->targets[i])
             glClearNamedFramebufferfv(gpu->framebuffer, GL_COLOR, i, zero);
-    }
     if (r->depth)
         glClearNamedFramebufferfv(gpu->framebuffer, GL_DEPTH, 0, &farthest);
 }

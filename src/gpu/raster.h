@@ -4,7 +4,7 @@
 
 #include "oriel/gpu.h"
 
-enum { ORL_RASTER_TARGETS_MAX = 4, ORL_RASTER_INPUTS_MAX = 4 };
+enum { ORL_RASTER_TARGETS_MAX = 2, ORL_RASTER_INPUTS_MAX = 3 };
 
 // One vertex input; array index = its location in the vertex program.
 struct orl_raster_input {
@@ -29,7 +29,7 @@ struct orl_raster {
     bool over;                     // blends, see above
     const struct orl_tex *textures[ORL_BINDINGS_MAX];     // what both programs read, by binding
     const struct orl_tex *images[ORL_BINDINGS_MAX];
-    const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by output location
+    const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by output location; floating point
     const struct orl_tex *depth;   // GL_DEPTH_COMPONENT32F; NULL: no depth test
 };
 // Errors are sticky, as those of orl_gpu_dispatch, and likewise what it writes is there for what follows.

@@ -5,10 +5,31 @@
 #include "gpu/compress.h"
 #include "gpu/internal.h"
 
+// What the texels of a format take: blocks of side x side texels have so many bytes.
+struct texel_format {
+    GLenum format;
+    unsigned char bytes, side;
+};
+
+static const struct texel_format *texel_format(GLenum format)
+{
+    static const struct texel_format all[] = {
+        {GL_R8, 1, 1}, {GL_RG8, 2, 1}, {GL_RGBA8, 4, 1}, {GL_SRGB8_ALPHA8, 4, 1}, {GL_R16F, 2, 1},
+        {GL_RGBA16F, 8, 1}, {GL_R32F, 4, 1}, {GL_RGBA32F, 16, 1}, {GL_DEPTH_COMPONENT32F, 4, 1},
+        {GL_R8UI, 1, 1}, {GL_R32I, 4, 1}, {GL_R32UI, 4, 1}, {GL_RG32UI, 8, 1}, {GL_RGBA32UI, 16, 1},
+        {GL_COMPRESSED_RED_RGTC1, 8, 4}, {GL_COMPRESSED_RG_RGTC2, 16, 4}, {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 4},
+    };
+    static const struct texel_format other = {.bytes = 16, .side = 1}; // an upper bound, used for accounting only
+    for (size_t i = 0; i < ORL_COUNT(all); i++)
+        if (all[i].format == format)
+            return &all[i];
+    return &other;
+}
+
 // Makes buf->texels. False: the device has no such view, which the caller says.
 static bool view_texels(struct orl_gpu *gpu, struct orl_buf *buf, GLenum format)
 {
-    size_t texels = buf->size / orl_texel_format(format)->bytes;
+    size_t texels = buf->size / texel_format(format)->bytes;
     buf->texels.params = (struct orl_tex_params){.width = (int)texels, .height = 1, .levels = 1, .format = format,
                                                  .owner = buf->owner, .tag = buf->tag};
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &buf->texels.id);
@@ -97,24 +118,6 @@ static int level_side(int side, int level)
     return side >> level ? side >> level : 1;
 }
 
-const struct texel_format *orl_texel_format(GLenum format)
-{
-    static const struct texel_format all[] = {
-        {GL_R8, 1, 1, false}, {GL_RG8, 2, 1, false}, {GL_RGBA8, 4, 1, false}, {GL_SRGB8_ALPHA8, 4, 1, false},
-        {GL_R16, 2, 1, false}, {GL_R16F, 2, 1, false}, {GL_RG16F, 4, 1, false}, {GL_RGBA16F, 8, 1, false},
-        {GL_R32F, 4, 1, false}, {GL_RG32F, 8, 1, false}, {GL_RGBA32F, 16, 1, false},
-        {GL_DEPTH_COMPONENT32F, 4, 1, false}, {GL_R8UI, 1, 1, true}, {GL_R16UI, 2, 1, true},
-        {GL_R32UI, 4, 1, true}, {GL_RG32UI, 8, 1, true}, {GL_RGBA32UI, 16, 1, true},
-        {GL_COMPRESSED_RED_RGTC1, 8, 4, false}, {GL_COMPRESSED_RG_RGTC2, 16, 4, false},
-        {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 4, false},
-    };
-    static const struct texel_format other = {.bytes = 16, .side = 1}; // an upper bound, used for accounting only
-    for (size_t i = 0; i < ORL_COUNT(all); i++)
-        if (all[i].format == format)
-            return &all[i];
-    return &other;
-}
-
 bool orl_gpu_has_compressed(const struct orl_gpu *gpu, GLenum format)
 {
     GLint supported = GL_FALSE;
@@ -136,7 +139,7 @@ int orl_mip_levels(int width, int height)
 
 size_t orl_tex_layer_bytes(const struct orl_tex_params *params)
 {
-    const struct texel_format *format = orl_texel_format(params->format);
+    const struct texel_format *format = texel_format(params->format);
     size_t bytes = 0, side = format->side;
     for (int level = 0; level == 0 || level < params->levels; level++) {
         size_t width = (size_t)level_side(params->width, level);
@@ -250,11 +253,8 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
 
 void orl_tex_clear(struct orl_tex *tex)
 {
-    // Integer formats require integer client data; the other formats accept any.
-    bool integer = orl_texel_format(tex->params.format)->integer;
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
-    glClearTexImage(tex->id, 0, integer ? GL_RED_INTEGER : GL_RED,
-                    integer ? GL_UNSIGNED_INT : GL_FLOAT, NULL);
+    glClearTexImage(tex->id, 0, GL_RED, GL_FLOAT, NULL);
 }
 
 void orl_tex_fill(struct orl_tex *tex, uint32_t word)
