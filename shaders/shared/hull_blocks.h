@@ -14,9 +14,6 @@ ORL_BLOCK(carve_block)
     INT(side);                    // voxels each way
     INT(open);                    // 1: the silhouette touches the picture's border
     FLOAT(most);                  // largest distance that is told apart, scene units
-    FLOAT(unused_1);
-    FLOAT(unused_2);
-    FLOAT(unused_3);
 };
 #endif
 
@@ -33,7 +30,6 @@ ORL_BLOCK(seen_block)
     INT(word);          // of this photograph
     INT(bit);
     FLOAT(voxel);       // edge, scene units
-    FLOAT(unused);
 };
 #endif
 
@@ -46,7 +42,6 @@ ORL_BLOCK(billboard_block)
     VEC4(view_focal);      // fx fy cx cy, pixels
     IVEC2(view_size);      // pixels
     FLOAT(billboard_half); // half their width, scene units
-    FLOAT(unused);
 };
 #endif
 

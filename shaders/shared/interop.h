@@ -1,6 +1,6 @@
 // Parameter blocks shared by C and GLSL, with std140 layout. Scalars are packed side by side as in
-// C. Vectors of four start at multiples of 16 bytes, vectors of two at multiples of 8. Members are
-// ordered and padded so that both languages agree.
+// C. Vectors of four start at multiples of 16 bytes, vectors of two at multiples of 8, as members of their order do in
+// C, too. A block is a multiple of 16 bytes.
 #ifndef ORL_INTEROP_H
 #define ORL_INTEROP_H
 
@@ -9,8 +9,8 @@
 #define FLOAT(name) float name
 #define INT(name) int name
 #define IVEC2(name) int name[2]
-#define VEC4(name) float name[4]
-#define VEC4S(name, count) float name[count][4]
+#define VEC4(name) _Alignas(16) float name[4]
+#define VEC4S(name, count) _Alignas(16) float name[count][4]
 #define IVEC4(name) int name[4]
 #else
 #define ORL_BLOCK(name) layout(std140, binding = 0) uniform name

@@ -26,7 +26,6 @@ ORL_BLOCK(splat_block)
     FLOAT(splat_scale); // this and the next: the options of the same names
     FLOAT(front_layer);
     FLOAT(near);        // depth nearer than which large splats are outliers
-    FLOAT(unused);
 };
 #endif
 
@@ -150,9 +149,6 @@ ORL_BLOCK(image_block)
     INT(layers);        // compose: 1: a pixel's weight is alpha, and it lies over what is behind
     IVEC2(pictures);    // mean: index of the picture, number of them
     FLOAT(footprint);   // antialias: pixels of a photograph in one of the view, each way
-    FLOAT(unused_1);
-    FLOAT(unused_2);
-    FLOAT(unused_3);
 };
 #endif
 
