@@ -57,13 +57,33 @@ static enum orl_result median(const struct frame *frame)
     return ORL_OK;
 }
 
-const struct post_pass orl_post_passes[] = {
-    {"fill", fills, orl_fill_color},
-    {"soften", softens, orl_fill_guesses},
-    {"compose", NULL, compose},
-    {"median", takes_median, median},
-    {"soft splats", orl_soft_layer_shows, orl_soft_layer_mix},
-    {"specks", orl_edges_find_specks, orl_edges_remove_specks},
-    {"antialias", antialiases, orl_edges_antialias},
-    {0},
-};
+static bool shows_soft_splats(const struct frame *frame)
+{
+    return frame->paint->soft.shows;
+}
+
+enum orl_result orl_compose(const struct frame *frame)
+{
+    static const struct {
+        const char *name;
+        bool (*applies)(const struct frame *frame); // NULL: always
+        enum orl_result (*run)(const struct frame *frame);
+    } passes[] = {
+        {"fill", fills, orl_fill_color},
+        {"soften", softens, orl_fill_guesses},
+        {"compose", NULL, compose},
+        {"median", takes_median, median},
+        {"soft splats", shows_soft_splats, orl_soft_layer_mix},
+        {"specks", orl_edges_find_specks, orl_edges_remove_specks},
+        {"antialias", antialiases, orl_edges_antialias},
+    };
+    for (size_t i = 0; i < ORL_COUNT(passes); i++) {
+        if (passes[i].applies && !passes[i].applies(frame))
+            continue;
+        orl_pass_begin(frame->gpu, passes[i].name);
+        enum orl_result result = passes[i].run(frame);
+        orl_pass_end(frame->gpu);
+        ORL_TRY(result);
+    }
+    return ORL_OK;
+}

@@ -6,14 +6,7 @@
 
 // --- compose.c: the passes between the painter and the finished picture ---
 
-// A pass after the painter. The passes run in the order of the list.
-struct post_pass {
-    const char *name;
-    bool (*applies)(const struct frame *frame); // NULL: always
-    enum orl_result (*run)(const struct frame *frame);
-};
-// Terminated by a NULL name.
-extern const struct post_pass orl_post_passes[];
+enum orl_result orl_compose(const struct frame *frame) ORL_CHECK_RESULT;
 
 // --- reconstructions.c ---
 

@@ -155,7 +155,7 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
                                     const struct orl_render_params *params)
 {
     const struct orl_painter *painter = frame->params->paint;
-    const bool room = orl_frame_shows_room(frame);
+    const bool room = frame->params->fill == ORL_FILL_ROOM;
     size_t absent = 0;
     ORL_TRY(draw_surface(frame, params));
     if (orl_params_guess(frame->params) && painter != &orl_paint_points)
@@ -167,15 +167,7 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
         frame->progressive->missing += absent;
     if (room)
         orl_room_show(frame, &r->room);
-    for (const struct post_pass *pass = orl_post_passes; pass->name; pass++) {
-        if (pass->applies && !pass->applies(frame))
-            continue;
-        orl_pass_begin(frame->gpu, pass->name);
-        enum orl_result result = pass->run(frame);
-        orl_pass_end(frame->gpu);
-        ORL_TRY(result);
-    }
-    return ORL_OK;
+    return orl_compose(frame);
 }
 
 static enum orl_result draw(struct orl_renderer *r, struct frame *frame, bool normals)

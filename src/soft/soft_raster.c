@@ -54,30 +54,24 @@ static struct soft_block block_of(const struct orl_soft_raster *raster, const st
     return block;
 }
 
-static enum orl_result fit_target(struct orl_gpu *gpu, struct orl_soft_raster *raster, int width, int height)
-{
-    return orl_tex_fit(gpu, &(struct orl_tex_params){.width = width, .height = height,
-                                                     .levels = orl_mip_levels(width, height), .format = GL_RGBA32F,
-                                                     .linear = true, .owner = ORL_OWNER_FRAME,
-                                                     .tag = "blended soft splats"},
-                       &raster->blended);
-}
-
 enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster *raster,
                                      const struct orl_view *view, bool smooths,
                                      struct soft_block *block)
 {
     *block = block_of(raster, view);
     block->smooths = smooths;
-    ORL_TRY(fit_target(gpu, raster, view->camera.width, view->camera.height));
+    const int width = view->camera.width, height = view->camera.height;
+    const struct orl_tex_params target = {.width = width, .height = height, .levels = orl_mip_levels(width, height),
+                                          .format = GL_RGBA32F, .linear = true, .tag = "blended soft splats"};
+    ORL_TRY(orl_tex_fit(gpu, &target, &raster->blended));
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), ORL_PARAMS(*block),
         .bufs = {[2] = raster->bounds}, .images = {[2] = &raster->splats->texels, [6] = &raster->projected->texels},
         .size = {(int)raster->count}});
     orl_buf_read(raster->bounds, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
     ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
-    ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, view->camera.width,
-                                view->camera.height, &raster->lists));
+    ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, width, height,
+                                &raster->lists));
     const size_t tiles = raster->lists.tiles, bytes = (tiles + 1 + raster->lists.entries) * sizeof(int);
     ORL_TRY(orl_buf_fit(gpu, ORL_OWNER_POINTS, "lists of soft splats", bytes, GL_R32I, &raster->listed));
     orl_buf_write(raster->listed, 0, bytes, raster->lists.listed);

@@ -32,16 +32,6 @@ bool orl_params_guess(const struct orl_render_params *params)
     return params->fill == ORL_FILL_DEPTH || params->fill == ORL_FILL_GROUND;
 }
 
-bool orl_frame_shows_room(const struct frame *frame)
-{
-    return frame->params->fill == ORL_FILL_ROOM;
-}
-
-bool orl_frame_rests(const struct frame *frame)
-{
-    return orl_params_guess(frame->params) && frame->scene->backdrop_rests;
-}
-
 double orl_frame_footprint(const struct frame *frame)
 {
     const struct orl_scene *scene = frame->scene;

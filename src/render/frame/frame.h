@@ -48,10 +48,6 @@ enum orl_result orl_frame_target(const struct frame *frame, const char *tag, boo
 
 // True if background depth is estimated where no surface covers a pixel.
 bool orl_params_guess(const struct orl_render_params *params);
-// True if this frame shows the scene's room (papers/room.h) where there is no surface.
-bool orl_frame_shows_room(const struct frame *frame);
-// True if the backdrop stays where it is in photographs (scene.h).
-bool orl_frame_rests(const struct frame *frame);
 // How many pixels of a photograph a pixel of the view covers each way where both are equally far, in
 // the mean over the photographs; at least 1. What is known of the scene by photographs, such as where
 // a silhouette is, is as exact as their pixels, whatever the view's are.

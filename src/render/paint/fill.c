@@ -111,7 +111,7 @@ void orl_fill_room(const struct frame *frame, struct orl_tex *room)
 enum orl_result orl_fill_color(const struct frame *frame)
 {
     // Before a complete room only surfaces are left to fill, and the walls' colours are not theirs.
-    bool surfaces = orl_frame_shows_room(frame) && !frame->params->paint->layers;
+    bool surfaces = frame->params->fill == ORL_FILL_ROOM && !frame->params->paint->layers;
     if (frame->radiance)
         restore_highlights(frame);
     if (!frame->finishes)

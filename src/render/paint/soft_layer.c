@@ -7,11 +7,6 @@
 #include "shared/constants.h"
 #include "soft/soft_ply.h"
 
-bool orl_soft_layer_shows(const struct frame *frame)
-{
-    return frame->paint->soft.shows;
-}
-
 static enum orl_result load(const struct frame *frame)
 {
     struct orl_soft_model model = {0};

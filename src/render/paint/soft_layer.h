@@ -16,8 +16,6 @@ struct soft_layer {
     struct orl_tex *gathered, *differs;
 };
 
-// True if the frame's picture shows soft splats.
-bool orl_soft_layer_shows(const struct frame *frame);
 // Makes the layer of a frame whose photographs are chosen ready, with the splats as each of them shows them. In a
 // progressive frame it is one photograph, and while others lack it, the frame no longer shows the splats.
 // ORL_ERR_NOT_FOUND: the scene has none (oriel refine).

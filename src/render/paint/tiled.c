@@ -11,7 +11,7 @@
 // For the passes that ask photographs. Without a backdrop that rests they lose no time.
 static const char *rest_define(const struct frame *frame)
 {
-    return orl_frame_rests(frame) ? "RESTS 1\n" : "";
+    return orl_params_guess(frame->params) && frame->scene->backdrop_rests ? "RESTS 1\n" : "";
 }
 
 // Paints from the photographs of each tile. `d`: the dispatch that has listed them.
@@ -21,7 +21,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     // The number of photographs is part of the program, so that none is sampled in vain.
     bool specks = orl_edges_find_specks(frame);
     snprintf(defines, sizeof defines, "%s%s%sKEPT %d", rest_define(frame), specks ? "SPECKS 1\n" : "",
-             orl_soft_layer_shows(frame) ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
+             frame->paint->soft.shows ? "SOFT 1\n" : "", (int)(frame->params->photos_per_pixel + 0.5f));
     d.prog = orl_gather_prog(frame, "gather/tiled.comp", defines);
     d.images[1] = frame->picture;
     d.images[2] = frame->paint->fill.level[0];
@@ -74,7 +74,7 @@ static enum orl_result paint(struct frame *frame)
         ORL_TRY(orl_progressive_admit(frame, true));
     for (size_t i = 0; !frame->progressive && i < frame->chosen_count; i++)
         ORL_TRY(orl_photos_require(frame, frame->chosen[i], true));
-    if (orl_soft_layer_shows(frame))
+    if (frame->paint->soft.shows)
         ORL_TRY(orl_soft_layer_ready(frame));
     ORL_TRY(paint_chosen(frame));
     return orl_gather_underpaint(frame);

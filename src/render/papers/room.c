@@ -10,7 +10,7 @@
 
 enum orl_result orl_room_resize(const struct frame *frame, struct room *room)
 {
-    return orl_frame_target(frame, "room", orl_frame_shows_room(frame), GL_RGBA32F, &room->picture);
+    return orl_frame_target(frame, "room", frame->params->fill == ORL_FILL_ROOM, GL_RGBA32F, &room->picture);
 }
 
 void orl_room_finish(struct orl_gpu *gpu, struct room *room)

@@ -15,21 +15,15 @@ enum {
     BLOCK = ORL_BLOCK_POINTS,
 };
 
-// A chunk in host memory.
-struct host_chunk {
-    uint32_t (*points)[2];
-    float (*blocks)[ORL_BLOCK_VEC4S][4];
-    size_t block_count;
-};
-
-static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk,
-                                    const struct host_chunk *host)
+// points, blocks: of the whole chunk; NULL: zeros.
+static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chunk, const void *points,
+                                    const void *blocks)
 {
-    size_t blocks = host->block_count;
-    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "points", blocks * BLOCK * 8, host->points, GL_RG32UI, &chunk->points));
-    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "point blocks", blocks * sizeof *host->blocks, host->blocks,
-                           GL_RGBA32F, &chunk->blocks));
-    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "point list", blocks * 4, NULL, GL_R32UI, &chunk->list));
+    size_t count = (size_t)chunk->block_count;
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "points", count * BLOCK * 8, points, GL_RG32UI, &chunk->points));
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "point blocks", count * ORL_BLOCK_VEC4S * 16, blocks, GL_RGBA32F,
+                           &chunk->blocks));
+    ORL_TRY(orl_buf_create(gpu, ORL_OWNER_POINTS, "point list", count * 4, NULL, GL_R32UI, &chunk->list));
     return orl_buf_create(gpu, ORL_OWNER_POINTS, "point list arguments", 16, NULL, GL_R32UI, &chunk->args);
 }
 
@@ -41,30 +35,23 @@ static enum orl_result make_colors(struct orl_gpu *gpu, struct point_chunk *chun
                           &chunk->colors);
 }
 
-// order: BLOCK entries of a block.
-static void fill_block(const struct orl_points *points, const uint32_t *order, size_t at,
-                       struct host_chunk *host)
-{
-    struct point_block block;
-    orl_point_block_make(points, order, &block);
-    for (size_t i = 0; i < BLOCK; i++)
-        memcpy(host->points[at * BLOCK + i], block.codes[i].geometry, sizeof block.codes[i].geometry);
-    memcpy(host->blocks[at], block.texels, sizeof block.texels);
-}
-
-static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *points,
+static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *all,
                                     const uint32_t *order, struct point_chunk *chunk)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    struct host_chunk host = {.block_count = (size_t)chunk->block_count};
-    host.points = orl_array(log, host.block_count * BLOCK, sizeof *host.points);
-    host.blocks = orl_array(log, host.block_count, sizeof *host.blocks);
-    enum orl_result result = host.points && host.blocks ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t b = 0; result == ORL_OK && b < host.block_count; b++)
-        fill_block(points, order + b * BLOCK, b, &host);
-    ORL_THEN(result, make_buffers(gpu, chunk, &host));
-    free(host.points);
-    free(host.blocks);
+    uint32_t (*points)[2] = orl_array(log, (size_t)chunk->count, sizeof *points);
+    float (*blocks)[ORL_BLOCK_VEC4S][4] = orl_array(log, (size_t)chunk->block_count, sizeof *blocks);
+    enum orl_result result = points && blocks ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t b = 0; result == ORL_OK && b < (size_t)chunk->block_count; b++) {
+        struct point_block block;
+        orl_point_block_make(all, order + b * BLOCK, &block);
+        for (size_t i = 0; i < BLOCK; i++)
+            memcpy(points[b * BLOCK + i], block.codes[i].geometry, sizeof block.codes[i].geometry);
+        memcpy(blocks[b], block.texels, sizeof block.texels);
+    }
+    ORL_THEN(result, make_buffers(gpu, chunk, points, blocks));
+    free(points);
+    free(blocks);
     return result;
 }
 
@@ -153,7 +140,7 @@ enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
     cloud->chunk_count = 1;
     chunk->block_count = (int)block_count;
     chunk->count = chunk->block_count * BLOCK;
-    ORL_TRY(make_buffers(gpu, chunk, &(struct host_chunk){.block_count = block_count}));
+    ORL_TRY(make_buffers(gpu, chunk, NULL, NULL));
     return make_colors(gpu, chunk, NULL);
 }
 
