@@ -45,14 +45,16 @@ static const char *web_file(const char *name)
     return "";
 }
 
-static void put_base64(FILE *out, const uint8_t *data, size_t size)
+static void put_base64(struct page *page, const uint8_t *data, size_t size)
 {
     enum { BYTES = 3 << 10 }; // encoded at once; a multiple of three, so that only the last part is filled up
-    char text[BYTES / 3 * 4 + 1];
+    char text[BYTES / 3 * 4 + 2]; // libwebsockets asks for a byte more than it writes
     for (size_t i = 0; i < size; i += BYTES) {
         size_t left = size - i;
-        lws_b64_encode_string((const char *)data + i, left < BYTES ? (int)left : BYTES, text, sizeof text);
-        fputs(text, out);
+        int length = lws_b64_encode_string((const char *)data + i, left < BYTES ? (int)left : BYTES, text, sizeof text);
+        if (length < 0)
+            page->result = orl_fail(page->log, ORL_ERR_EXTERNAL, "the page's files cannot be encoded");
+        fwrite(text, 1, length < 0 ? 0 : (size_t)length, page->out);
     }
 }
 
@@ -96,19 +98,17 @@ static void put_scripts(struct page *page)
 
 // Puts a module as base64 of a data: address. Such an address is no place to be relative to, so what the module
 // imports as "./NAME" becomes "oriel/NAME".
-static enum orl_result put_module(const struct page *page, const char *module)
+static void put_module(struct page *page, const char *module)
 {
     static const char relative[] = "from \"./", named[] = "from \"oriel/";
     struct orl_bytes plain = {0};
-    enum orl_result result = ORL_OK;
     for (const char *at; (at = strstr(module, relative)) != NULL; module = at + strlen(relative)) {
-        ORL_THEN(result, orl_bytes_add(page->log, &plain, module, (size_t)(at - module)));
-        ORL_THEN(result, orl_bytes_add(page->log, &plain, named, strlen(named)));
+        ORL_THEN(page->result, orl_bytes_add(page->log, &plain, module, (size_t)(at - module)));
+        ORL_THEN(page->result, orl_bytes_add(page->log, &plain, named, strlen(named)));
     }
-    ORL_THEN(result, orl_bytes_add(page->log, &plain, module, strlen(module)));
-    put_base64(page->out, (const uint8_t *)plain.data, plain.size);
+    ORL_THEN(page->result, orl_bytes_add(page->log, &plain, module, strlen(module)));
+    put_base64(page, (const uint8_t *)plain.data, plain.size);
     free(plain.data);
-    return result;
 }
 
 // Every module under the name by which others import it, or where it is.
@@ -124,7 +124,7 @@ static void put_modules(struct page *page)
         if (strncmp(f->name, "js/", 3) != 0)
             continue;
         fprintf(page->out, "%s\n\"oriel/%s\": \"data:text/javascript;base64,", before, f->name + 3);
-        ORL_THEN(page->result, put_module(page, f->text));
+        put_module(page, f->text);
         fputs("\"", page->out);
         before = ",";
     }
@@ -137,7 +137,7 @@ static void put_file(struct page *page, const char *path, const char *before)
     size_t size = 0;
     ORL_THEN(page->result, orl_file_read(page->log, ORL_PATH(page->site->dir, "%s", path), FILE_MAX, &data, &size));
     fprintf(page->out, "%s\"%s\": \"", before, path);
-    put_base64(page->out, data, size);
+    put_base64(page, data, size);
     fputs("\"", page->out);
     free(data);
 }
