@@ -1,5 +1,6 @@
 // The geometry of points as src/scene/point_code.c encodes it, in 8 bytes. A position is a number
-// of steps from the corner of the point's block, which a texel gives together with the step.
+// of steps from the corner of the point's block, which a texel gives together with the step. The upper
+// half of code.y is the normal in octahedral form, two signed bytes.
 const float POINT_CODES_PER_OCTAVE = 16.0;
 
 vec3 point_steps(uvec2 code)
@@ -10,12 +11,6 @@ vec3 point_steps(uvec2 code)
 bool point_exists(uvec2 code)
 {
     return (code.y & 0x8000u) != 0u;
-}
-
-// In octahedral form.
-vec2 point_normal(uvec2 code)
-{
-    return unpackSnorm4x8(code.y).zw;
 }
 
 float point_radius(uvec2 code, float step)

@@ -39,7 +39,7 @@ surfel splat(ivec2 at, int point)
     float count = float(word / SPLAT_LAYER_COUNT), steps = float(word % SPLAT_LAYER_COUNT);
     float behind = count > 1.0 ? min((steps / count + 0.5) / SPLAT_LAYER_STEPS, 1.0) : 0.0;
     p *= 1.0 + behind * front_layer;
-    vec3 n = splat_camera_vector(octahedron_decode(point_normal(code)));
+    vec3 n = splat_camera_vector(octahedron_decode(unpackSnorm4x8(code.y).zw));
     float radius = point_radius(code, corner.w) * splat_scale;
     bool outlier = p.z < near && radius * focal.y > ORL_OUTLIER_SHARE * float(view_size.y) * p.z;
     radius = outlier ? 0.0 : radius;

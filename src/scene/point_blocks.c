@@ -91,8 +91,9 @@ static void sort_keys(struct key **keys, struct key **spare, size_t count)
     }
 }
 
-enum orl_result orl_point_curve(const struct orl_log *log, const struct orl_points *points,
-                                const struct point_cube *cube, uint32_t **curve, size_t *count)
+// The finite points along the Morton curve. The caller frees *curve.
+static enum orl_result sort_points(const struct orl_log *log, const struct orl_points *points,
+                                   const struct point_cube *cube, uint32_t **curve, size_t *count)
 {
     struct key *keys = orl_array(log, points->count, sizeof *keys);
     struct key *spare = orl_array(log, points->count, sizeof *spare);
@@ -117,24 +118,25 @@ enum orl_result orl_point_curve(const struct orl_log *log, const struct orl_poin
     return result;
 }
 
-void orl_point_shuffle(const uint32_t *sorted, size_t count, unsigned size, uint32_t *shuffled)
+// Puts `count` of at most `size` neighbours into bit-reversed order, so that any first part is spread
+// evenly.
+static void shuffle(const uint32_t *sorted, size_t count, size_t size, uint32_t *shuffled)
 {
     size_t next = 0;
-    for (unsigned i = 0; i < size; i++) {
-        unsigned from = 0;
-        for (unsigned bit = 1; bit < size; bit *= 2)
+    for (size_t i = 0; i < size; i++) {
+        size_t from = 0;
+        for (size_t bit = 1; bit < size; bit *= 2)
             from = 2 * from + (i & bit ? 1 : 0);
         if (from < count)
             shuffled[next++] = sorted[from];
     }
 }
 
-// How many of the points at `sorted` make the next block: as many as fit, unless storage in one block
-// would be imprecise because distances or radii within it are very different.
-static size_t block_size(const struct orl_points *points, const uint32_t *sorted, size_t count)
+// How many of the points at `sorted`, `most` or fewer, make the next block: storage in one block would
+// be imprecise where distances or radii within it are very different.
+static size_t block_size(const struct orl_points *points, const uint32_t *sorted, size_t most)
 {
     struct point_range range = orl_point_range_none();
-    size_t most = count < BLOCK ? count : BLOCK;
     for (size_t i = 0; i < most; i++) {
         uint32_t point = sorted[i];
         orl_point_range_add(&range, points->position[point], points->radius[point]);
@@ -144,37 +146,41 @@ static size_t block_size(const struct orl_points *points, const uint32_t *sorted
     return most;
 }
 
-// Divides sorted points into blocks, each filled up to BLOCK entries without a point.
+// Divides sorted points into blocks, each filled up to `size` entries without a point.
 static size_t make_blocks(const struct orl_points *points, const uint32_t *sorted, size_t count,
-                          uint32_t *order, size_t capacity)
+                          size_t size, uint32_t *order, size_t capacity)
 {
     size_t to = 0, first = 0;
     while (first < count) {
-        size_t left = count - first, needed = (left + BLOCK - 1) / BLOCK * BLOCK;
-        size_t here = left < BLOCK ? left : BLOCK;
-        if (to + needed + BLOCK <= capacity) // there is room for one more block
-            here = block_size(points, sorted + first, left);
-        orl_point_shuffle(sorted + first, here, BLOCK, order + to);
-        for (size_t i = here; i < BLOCK; i++)
+        size_t left = count - first, needed = (left + size - 1) / size * size;
+        size_t here = left < size ? left : size;
+        if (to + needed + size <= capacity) // there is room for one more block
+            here = block_size(points, sorted + first, here);
+        shuffle(sorted + first, here, size, order + to);
+        for (size_t i = here; i < size; i++)
             order[to + i] = UINT32_MAX;
-        to += BLOCK;
+        to += size;
         first += here;
     }
     return to;
 }
 
 enum orl_result orl_point_order(const struct orl_log *log, const struct orl_points *points,
-                                const struct point_cube *cube, uint32_t **order, size_t *count)
+                                const struct point_cube *cube, size_t size, uint32_t **order,
+                                size_t *count)
 {
-    size_t blocks = points->count / BLOCK + 1, used = 0;
-    size_t capacity = (blocks + blocks / SPLITS + SPLITS) * BLOCK;
+    size_t blocks = points->count / size + 1, used = 0;
+    size_t capacity = (blocks + blocks / SPLITS + SPLITS) * size;
+    struct point_cube own;
     uint32_t *curve = NULL;
     *count = 0;
     *order = NULL;
-    ORL_TRY(orl_point_curve(log, points, cube, &curve, &used));
+    if (!cube)
+        ORL_TRY(orl_point_cube_find(log, points, &own));
+    ORL_TRY(sort_points(log, points, cube ? cube : &own, &curve, &used));
     *order = orl_array(log, capacity, sizeof **order);
     if (*order)
-        *count = make_blocks(points, curve, used, *order, capacity);
+        *count = make_blocks(points, curve, used, size, *order, capacity);
     free(curve);
     return *order ? ORL_OK : ORL_ERR_MEMORY;
 }

@@ -20,18 +20,12 @@ enum orl_result orl_point_cube_find(const struct orl_log *log, const struct orl_
 // from the highest on, halve the cube once more in z, y and x.
 uint64_t orl_point_cube_morton(const struct point_cube *cube, const float position[3]);
 
-// The finite points along the Morton curve. *curve is owned by the caller (free).
-enum orl_result orl_point_curve(const struct orl_log *log, const struct orl_points *points,
-                                const struct point_cube *cube, uint32_t **curve,
-                                size_t *count) ORL_CHECK_RESULT;
-// Puts `count` of at most `size` neighbours, a power of two, into bit-reversed order, so that any
-// first part is spread evenly.
-void orl_point_shuffle(const uint32_t *sorted, size_t count, unsigned size, uint32_t *shuffled);
-// The order in which points are stored, without those that are not finite: whole blocks along the
-// Morton curve, each shuffled so that any first part of it is spread evenly. Entries without a
-// point are UINT32_MAX and come last in their block. *order is owned by the caller (free).
+// The order in which points are stored, without those that are not finite: whole blocks of `size`
+// entries, a power of two, along the Morton curve through the cube (NULL: that of the points), each
+// shuffled so that any first part of it is spread evenly. Entries without a point are UINT32_MAX and
+// come last in their block. *order is owned by the caller (free).
 enum orl_result orl_point_order(const struct orl_log *log, const struct orl_points *points,
-                                const struct point_cube *cube, uint32_t **order,
+                                const struct point_cube *cube, size_t size, uint32_t **order,
                                 size_t *count) ORL_CHECK_RESULT;
 
 // A block: its points, and what shaders/proxy/splat_cull.comp reads of it.

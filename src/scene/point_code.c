@@ -91,7 +91,8 @@ static uint8_t signed_byte(double value)
     return (uint8_t)(int8_t)lrint(fmin(1, fmax(-1, value)) * 127);
 }
 
-uint16_t orl_octahedron_bytes(const float normal[3])
+// A direction as in shaders/proxy/octahedron.glsl, in two signed bytes: x in the low byte.
+static uint16_t octahedron_bytes(const float normal[3])
 {
     double x = normal[0], y = normal[1], sum = fabs(x) + fabs(y) + fabs((double)normal[2]);
     if (!(sum > 0))
@@ -115,7 +116,7 @@ struct point_code orl_point_encode(const struct point_frame *frame, const float 
         .geometry = {q[0] | q[1] << POSITION_BITS | q[2] << 2 * POSITION_BITS,
                      q[2] >> (32 - 2 * POSITION_BITS) |
                          radius_code(radius, frame->step) << RADIUS_AT | 1u << THERE_AT |
-                         (uint32_t)orl_octahedron_bytes(normal) << NORMAL_AT},
+                         (uint32_t)octahedron_bytes(normal) << NORMAL_AT},
         .color = {color[0], color[1], color[2]}};
 }
 

@@ -1,6 +1,7 @@
 // Private: how points are stored on the device: their geometry in 8 bytes, their colours apart, since
 // only the method `points` reads them and a walk while photographs are loaded. Positions are whole
-// numbers of steps from the corner of their block. shaders/proxy/point.glsl decodes them.
+// numbers of steps from the corner of their block. shaders/proxy/point.glsl and, of a published site,
+// web/js/points.js decode them.
 #ifndef ORL_SCENE_POINT_CODE_H
 #define ORL_SCENE_POINT_CODE_H
 
@@ -44,7 +45,5 @@ bool orl_point_decode_position(const struct point_frame *frame, const uint32_t g
 // Unit length; of a point without a normal, +z.
 void orl_point_decode_normal(const uint32_t geometry[2], float normal[3]);
 float orl_point_decode_radius(const struct point_frame *frame, const uint32_t geometry[2]);
-// Encodes a direction as shaders/proxy/octahedron.glsl, in two signed bytes: x in the low byte.
-uint16_t orl_octahedron_bytes(const float normal[3]);
 
 #endif

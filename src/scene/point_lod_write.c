@@ -150,7 +150,7 @@ static enum orl_result add_blocks(struct writer *w, size_t part)
         orl_points_apply_limits(&w->limits, scales, &points);
     if (result == ORL_OK) {
         orl_points_drop_flat(&points);
-        result = orl_point_order(w->log, &points, &w->parts.cube, &order, &count);
+        result = orl_point_order(w->log, &points, &w->parts.cube, ORL_BLOCK_POINTS, &order, &count);
     }
     for (size_t i = 0; result == ORL_OK && i < count; i += ORL_BLOCK_POINTS)
         result = add_block(w, &points, order + i);

@@ -4,9 +4,10 @@
 #include <math.h>
 
 #include "core/memory.h"
+#include "scene/point_code.h"
 #include "walk/internal.h"
 
-enum { HEADER = 16, CELL = 48, POINT = 12 };
+enum { HEADER = 16, CELL = 44, POINT = 12 };
 
 struct setup {
     char *dir;
@@ -82,11 +83,10 @@ static uint32_t number(const uint8_t *cell, int index)
 
 static void decode(const uint8_t *cell, const uint8_t *point, float position[3], float *radius)
 {
-    for (int k = 0; k < 3; k++) {
-        unsigned value = point[2 * k] | (unsigned)point[2 * k + 1] << 8;
-        position[k] = word(cell, k) + word(cell, 3 + k) * (float)value / 65535;
-    }
-    *radius = word(cell, 6) * exp2f(word(cell, 7) * (float)point[11] / 255);
+    const struct point_frame frame = {{word(cell, 0), word(cell, 1), word(cell, 2)}, word(cell, 3)};
+    const uint32_t geometry[2] = {number(point, 0), number(point, 1)};
+    assert_true(orl_point_decode_position(&frame, geometry, position));
+    *radius = orl_point_decode_radius(&frame, geometry);
 }
 
 // All points come back: from the coarse file and the others, where they were, with their radii
@@ -110,10 +110,10 @@ static void test_points_come_back(void **state)
     uint8_t *seen = orl_array(&s.log, SIDE * SIDE, 1);
     for (uint32_t c = 0; c < s.cells; c++) {
         const uint8_t *cell = coarse + HEADER + CELL * c;
-        uint32_t count = number(cell, 8), first = number(cell, 9), file = number(cell, 10);
+        uint32_t count = number(cell, 7), first = number(cell, 8), file = number(cell, 9);
         for (uint32_t i = 0; i < count; i++) {
             const uint8_t *point = i < first ? next + POINT * i
-                                             : rest[file] + POINT * (number(cell, 11) + i - first);
+                                             : rest[file] + POINT * (number(cell, 10) + i - first);
             float p[3], radius;
             decode(cell, point, p, &radius);
             size_t x = (size_t)lrintf(p[0] * SIDE), y = (size_t)lrintf(p[1] * SIDE);
@@ -140,8 +140,8 @@ static void count_ninth(const uint8_t *cell, const uint8_t *point, int counts[9]
 {
     float p[3], radius;
     decode(cell, point, p, &radius);
-    int x = (int)fminf(2, 3 * (p[0] - word(cell, 0)) / word(cell, 3));
-    int y = (int)fminf(2, 3 * (p[1] - word(cell, 1)) / word(cell, 4));
+    int x = (int)fminf(2, 3 * (p[0] - word(cell, 0)) / word(cell, 4));
+    int y = (int)fminf(2, 3 * (p[1] - word(cell, 1)) / word(cell, 5));
     counts[3 * y + x]++;
 }
 
@@ -156,14 +156,14 @@ static void test_first_parts_are_spread(void **state)
     size_t size;
     const uint8_t *cell = s.coarse + HEADER, *points = s.coarse + HEADER + CELL * s.cells;
     uint8_t *rest = read_file(&s, "points/0000.bin", &size);
-    int some[9] = {0}, all[9] = {0}, first = 90, coarse = (int)number(cell, 9);
+    int some[9] = {0}, all[9] = {0}, first = 90, coarse = (int)number(cell, 8);
     assert_true(coarse >= first);
     for (int i = 0; i < first; i++)
         count_ninth(cell, points + POINT * i, some);
-    for (int i = 0; i < (int)number(cell, 8); i++)
+    for (int i = 0; i < (int)number(cell, 7); i++)
         count_ninth(cell, i < coarse ? points + POINT * i : rest + POINT * (i - coarse), all);
     for (int k = 0; k < 9; k++) {
-        float share = (float)all[k] * (float)first / (float)number(cell, 8);
+        float share = (float)all[k] * (float)first / (float)number(cell, 7);
         assert_true(fabsf((float)some[k] - share) <= 0.5f * share + 1);
     }
     free(rest);
@@ -179,12 +179,16 @@ static void test_thinned_points_grow(void **state)
     s.params.max_points = 256 * 256 / 4;
     publish(&s);
     assert_int_equal(s.report.points, 256 * 256 / 4);
-    const uint8_t *coarse = s.coarse;
+    const uint8_t *point = s.coarse + HEADER + CELL * s.cells;
     float least = INFINITY, most = 0;
     for (uint32_t c = 0; c < s.cells; c++) {
-        const uint8_t *cell = coarse + HEADER + CELL * c;
-        least = fminf(least, word(cell, 6));
-        most = fmaxf(most, word(cell, 6) * exp2f(word(cell, 7)));
+        const uint8_t *cell = s.coarse + HEADER + CELL * c;
+        for (uint32_t i = 0; i < number(cell, 8); i++, point += POINT) {
+            float p[3], radius;
+            decode(cell, point, p, &radius);
+            least = fminf(least, radius);
+            most = fmaxf(most, radius);
+        }
     }
     assert_true(fabsf(least - 0.02f) < 1e-4f && fabsf(most - 0.08f) < 1e-3f);
     finish(&s);

@@ -82,7 +82,10 @@ export class Device {
         gl.bufferData(gl.ARRAY_BUFFER, bytes, usage);
         rows.forEach(([count, type, at], i) => {
             gl.enableVertexAttribArray(i);
-            gl.vertexAttribPointer(i, count, type, true, stride, at);
+            if (type === gl.UNSIGNED_INT)
+                gl.vertexAttribIPointer(i, count, type, stride, at);
+            else
+                gl.vertexAttribPointer(i, count, type, true, stride, at);
             gl.vertexAttribDivisor(i, divisor);
         });
         gl.bindVertexArray(null);

@@ -1,21 +1,21 @@
 // The point cloud: cells in one vertex buffer, coarse parts first, and what of it a view draws.
 import {add, dot, rotate, row, scale, sub} from "./math.js";
 
-const MAGIC = 0x504c524f, HEADER_BYTES = 16, CELL_WORDS = 12, POINT_BYTES = 12;
+const MAGIC = 0x504c524f, HEADER_BYTES = 16, CELL_WORDS = 11, POINT_BYTES = 12;
 
 function readCells(data)
 {
     const header = new Uint32Array(data, 0, 4);
-    if (header[0] !== MAGIC || header[1] !== 2 || header[3] !== POINT_BYTES)
+    if (header[0] !== MAGIC || header[1] !== 3 || header[3] !== POINT_BYTES)
         throw new Error("points/coarse.bin: not what this page reads");
     const cells = [];
     let base = 0;
     for (let i = 0; i < header[2]; i++) {
         const at = HEADER_BYTES + 4 * CELL_WORDS * i;
         const f = new Float32Array(data, at, CELL_WORDS), u = new Uint32Array(data, at, CELL_WORDS);
-        cells.push({low: [f[0], f[1], f[2]], size: [f[3], f[4], f[5]], radiusLow: f[6],
-                    radiusOctaves: f[7], count: u[8], loaded: 0, coarse: u[9], file: u[10], first: u[11], base});
-        base += u[8];
+        cells.push({low: [f[0], f[1], f[2]], step: f[3], size: [f[4], f[5], f[6]], count: u[7], loaded: 0,
+                    coarse: u[8], file: u[9], first: u[10], base});
+        base += u[7];
     }
     return {cells, points: base, coarseData: new Uint8Array(data, HEADER_BYTES + 4 * CELL_WORDS * header[2])};
 }
@@ -25,7 +25,7 @@ export class Cloud {
     {
         const {gl} = device, read = readCells(data);
         this.bytes = read.points * POINT_BYTES;
-        const rows = [[3, gl.UNSIGNED_SHORT, 0], [2, gl.BYTE, 6], [4, gl.UNSIGNED_BYTE, 8]];
+        const rows = [[2, gl.UNSIGNED_INT, 0], [2, gl.BYTE, 6], [3, gl.UNSIGNED_BYTE, 8]];
         Object.assign(this, read, {gl}, device.vertices(this.bytes, gl.STATIC_DRAW, POINT_BYTES, rows));
         let at = 0;
         for (const cell of this.cells) {
@@ -67,9 +67,11 @@ export class Cloud {
         let at = 0;
         for (const cell of this.cells) {
             for (let i = 0; i < cell.coarse; i++, at += POINT_BYTES) {
-                const p = [0, 1, 2].map(k => cell.low[k] + cell.size[k] *
-                                             view.getUint16(at + 2 * k, true) / 65535);
-                visit(p, [view.getUint8(at + 8), view.getUint8(at + 9), view.getUint8(at + 10)]);
+                // As shaders/proxy/point.glsl.
+                const x = view.getUint32(at, true), y = view.getUint32(at + 4, true);
+                const steps = [x & 0x1fff, x >>> 13 & 0x1fff, x >>> 26 | (y & 0x7f) << 6];
+                visit(steps.map((n, k) => cell.low[k] + cell.step * n),
+                      [view.getUint8(at + 8), view.getUint8(at + 9), view.getUint8(at + 10)]);
             }
         }
     }

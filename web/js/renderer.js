@@ -215,7 +215,7 @@ export class Renderer {
         const lists = this.clouds.map(cloud => ({cloud, list: cloud.visible(camera)}));
         this.drawn = lists.reduce((sum, {list}) => list.reduce((part, cell) => part + cell.loaded, sum), 0);
         const common = {...this.values, rotation: camera.r, size: [camera.width, camera.height],
-                        cell_low: [0, 0, 0], cell_size: [1, 1, 1], cell_radius: [1, 0]};
+                        cell_low: [0, 0, 0], cell_step: 1, radius_scale: 1};
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LESS);
         this.device.clear(f.level0);
@@ -238,12 +238,10 @@ export class Renderer {
             gl.bindVertexArray(cloud.vertices);
             for (const cell of list) {
                 program.set(places("cell_low"), sub(cell.low, this.camera.eye));
-                program.set(places("cell_size"), cell.size);
-                if (places("cell_radius"))
+                program.set(places("cell_step"), cell.step);
+                if (places("radius_scale"))
                     // Points that are there stand for those that are still loading.
-                    program.set(places("cell_radius"),
-                                [cell.radiusLow * radiusScale * Math.sqrt(cell.count / cell.loaded),
-                                 cell.radiusOctaves]);
+                    program.set(places("radius_scale"), radiusScale * Math.sqrt(cell.count / cell.loaded));
                 gl.drawArrays(gl.POINTS, cell.base, cell.loaded);
             }
         }

@@ -1,16 +1,18 @@
 // Points of one cell, one pixel each. Row 0 of every target but the canvas is the top row.
 // LAYER: the points of the front layer alone, which layer.frag sums for their mean depth.
 #include "proxy/octahedron.glsl"
+#include "proxy/point.glsl"
 
-layout(location = 0) in vec3 part;       // position within the cell's bounds
+layout(location = 0) in uvec2 code;
 layout(location = 1) in vec2 octahedral; // normal
-layout(location = 2) in vec4 look;       // sRGB colour; how large the radius is within the cell
-uniform mat3 rotation;                   // camera from world
-uniform vec3 cell_low, cell_size;        // bounds; low relative to the eye
-uniform vec2 cell_radius;                // the smallest, and octaves up to the largest
-uniform vec4 view_focal;                      // fx fy cx cy, pixels
-uniform vec2 size;                       // pixels
-uniform float typical;                   // depth, where the depth test is most exact
+layout(location = 2) in vec3 srgb;
+uniform mat3 rotation;      // camera from world
+uniform vec3 cell_low;      // what positions count from, relative to the eye
+uniform float cell_step;    // their unit
+uniform float radius_scale;
+uniform vec4 view_focal;    // fx fy cx cy, pixels
+uniform vec2 size;          // pixels
+uniform float typical;      // depth, where the depth test is most exact
 
 #ifdef LAYER
 uniform sampler2D nearest; // splats.frag
@@ -24,7 +26,7 @@ flat out vec3 color;
 
 void main()
 {
-    vec3 p = rotation * (cell_low + part * cell_size);
+    vec3 p = rotation * (cell_low + cell_step * point_steps(code));
     vec2 pixel = view_focal.xy * p.xy / p.z + view_focal.zw;
     vec2 at = floor(pixel);
     bool drawn = p.z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < size.x && at.y < size.y;
@@ -35,9 +37,9 @@ void main()
 #else
     vec3 n = rotation * octahedron_decode(octahedral);
     n = dot(n, p) > 0.0 ? -n : n;
-    splat = vec4(p.z, cell_radius.x * exp2(cell_radius.y * look.a), pixel - (at + 0.5));
+    splat = vec4(p.z, radius_scale * point_radius(code, cell_step), pixel - (at + 0.5));
     normal = packSnorm2x16(octahedron_encode(n));
-    color = look.rgb;
+    color = srgb;
 #endif
     vec2 place = (at + 0.5) / size * 2.0 - 1.0;
     float order = 2.0 * p.z / (p.z + typical) - 1.0;

@@ -70,16 +70,6 @@ static enum orl_result upload_colors(struct orl_gpu *gpu, const struct orl_point
     return result;
 }
 
-// Along the points' own cube.
-enum orl_result orl_cloud_order(const struct orl_log *log, const struct orl_points *points, uint32_t **order,
-                                size_t *count)
-{
-    struct point_cube cube;
-    *order = NULL;
-    enum orl_result result = orl_point_cube_find(log, points, &cube);
-    return result == ORL_OK ? orl_point_order(log, points, &cube, order, count) : result;
-}
-
 size_t orl_cloud_chunk_points(const struct orl_gpu *gpu)
 {
     size_t most = (size_t)orl_gpu_caps(gpu)->max_buffer_texels / 3 / BLOCK * BLOCK; // of colours
@@ -96,7 +86,7 @@ enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *poi
     size_t most = orl_cloud_chunk_points(gpu);
     uint32_t *order = NULL;
     size_t count = 0;
-    enum orl_result result = orl_cloud_order(log, points, &order, &count);
+    enum orl_result result = orl_point_order(log, points, NULL, BLOCK, &order, &count);
     if (result == ORL_OK) {
         cloud->chunks = orl_array(log, count / most + 1, sizeof *cloud->chunks);
         result = cloud->chunks ? ORL_OK : ORL_ERR_MEMORY;
@@ -122,7 +112,7 @@ enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
     size_t count = 0;
     if (cloud->chunks[cloud->chunk_count - 1].colors)
         return ORL_OK;
-    enum orl_result result = orl_cloud_order(orl_gpu_log(gpu), cloud->points, &order, &count);
+    enum orl_result result = orl_point_order(orl_gpu_log(gpu), cloud->points, NULL, BLOCK, &order, &count);
     for (size_t i = 0; result == ORL_OK && i < cloud->chunk_count; i++) {
         struct point_chunk *chunk = &cloud->chunks[i];
         if (!chunk->colors) // the memory may have ended before

@@ -23,8 +23,9 @@ struct cloud {
     float near;                // of struct orl_scene
 };
 
-// Sorts the points and uploads them without their colours. Points with a value that is not finite
-// are omitted. The points live as long as the cloud.
+// Uploads the points without their colours in the order of orl_point_order, by which the splat index
+// texture has them. Points with a value that is not finite are omitted. The points live as long as the
+// cloud.
 enum orl_result orl_cloud_init(struct orl_gpu *gpu, const struct orl_points *points,
                                struct cloud *cloud);
 // Uploads the colours, unless they are there.
@@ -35,10 +36,6 @@ enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
 // How many points a chunk may have on this device: whole blocks.
 size_t orl_cloud_chunk_points(const struct orl_gpu *gpu);
-// Which point of `points` each point on the device is, by the index that the splat index texture has; UINT32_MAX:
-// padding. *order is owned by the caller (free).
-enum orl_result orl_cloud_order(const struct orl_log *log, const struct orl_points *points, uint32_t **order,
-                                size_t *count) ORL_CHECK_RESULT;
 // Lists the blocks to draw of each chunk. The counts and the first index in `block` are
 // overwritten.
 void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block);

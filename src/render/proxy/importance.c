@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "render/proxy/proxy.h"
 #include "render/proxy/splats.h"
+#include "scene/point_blocks.h"
 
 struct orl_importance {
     struct orl_gpu *gpu;
@@ -23,7 +24,8 @@ enum orl_result orl_importance_create(struct orl_gpu *gpu, const struct orl_scen
     ORL_TRY_MEMORY(c);
     c->gpu = gpu;
     enum orl_result result = orl_proxy_create(gpu, scene, &orl_proxy_splats, 0, &c->proxy);
-    ORL_THEN(result, orl_cloud_order(orl_gpu_log(gpu), &scene->points, &c->points, &c->count));
+    ORL_THEN(result, orl_point_order(orl_gpu_log(gpu), &scene->points, NULL, ORL_BLOCK_POINTS, &c->points,
+                                     &c->count));
     if (result != ORL_OK)
         orl_importance_destroy(out);
     return result;
