@@ -8,10 +8,11 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "oriel/image.h"
 
 // TEXT_SHARE: jansson collects a string in a buffer that it doubles, then copies. A buffer that cannot
 // grow makes it read past its end, or abort (jansson 2.14), so that its memory must be there before.
-enum { JSON_MAX_BYTES = 64 << 20, TEXT_SHARE = 8 };
+enum { TEXT_SHARE = 8 };
 
 enum orl_result orl_json_parse(const struct orl_log *log, const char *path, const void *text,
                                size_t size, json_t **out)
@@ -30,16 +31,22 @@ enum orl_result orl_json_parse(const struct orl_log *log, const char *path, cons
                            error.position, error.text);
 }
 
-enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_t **out)
+enum orl_result orl_json_load(const struct orl_log *log, const char *path, size_t most, json_t **out)
 {
     *out = NULL;
     uint8_t *data = NULL;
     size_t size;
-    enum orl_result result = orl_file_read(log, path, JSON_MAX_BYTES, &data, &size);
+    enum orl_result result = orl_file_read(log, path, most, &data, &size);
     ORL_THEN(result, orl_json_parse(log, path, data, size, out));
     free(data);
-    if (result != ORL_OK || json_is_object(*out))
-        return result;
+    return result;
+}
+
+enum orl_result orl_json_read(const struct orl_log *log, const char *path, json_t **out)
+{
+    ORL_TRY(orl_json_load(log, path, ORL_JSON_MAX_BYTES, out));
+    if (json_is_object(*out))
+        return ORL_OK;
     json_decref(*out);
     *out = NULL;
     return orl_fail(log, ORL_ERR_FORMAT, "%s: byte 0: not a JSON object", path);
@@ -166,6 +173,32 @@ bool orl_json_read_numbers(const json_t *array, size_t count, double *values)
             return false;
     }
     return true;
+}
+
+bool orl_json_rows(const json_t *array, size_t rows, size_t columns, double *values)
+{
+    bool good = json_is_array(array) && json_array_size(array) == rows;
+    for (size_t i = 0; good && i < rows; i++)
+        good = orl_json_read_numbers(json_array_get(array, i), columns, values + i * columns);
+    return good;
+}
+
+bool orl_json_pose(const json_t *array, struct orl_pose *pose)
+{
+    double rows[3][4];
+    if (!orl_json_rows(array, 3, 4, &rows[0][0]))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        memcpy(pose->r[i], rows[i], sizeof pose->r[i]);
+        pose->t[i] = rows[i][3];
+    }
+    return true;
+}
+
+int orl_json_side(const json_t *object, const char *key)
+{
+    json_int_t side = json_integer_value(json_object_get(object, key));
+    return side >= 1 && side <= ORL_IMAGE_MAX_SIDE ? (int)side : 0;
 }
 
 double orl_json_value(const json_t *object, const char *key)

@@ -4,13 +4,18 @@
 
 #include <jansson.h>
 
+#include "oriel/camera.h"
 #include "oriel/log.h"
 
 // Parses text into a value of any JSON type, released with json_decref. Errors name `path`, the
 // line, the byte and the reason.
 enum orl_result orl_json_parse(const struct orl_log *log, const char *path, const void *text,
                                size_t size, json_t **out) ORL_CHECK_RESULT;
-// Parses a JSON object of at most 64 MiB, released with json_decref.
+// Reads a file of at most `most` bytes as orl_json_parse does.
+enum orl_result orl_json_load(const struct orl_log *log, const char *path, size_t most,
+                              json_t **out) ORL_CHECK_RESULT;
+// Reads a JSON object of at most ORL_JSON_MAX_BYTES, released with json_decref.
+enum { ORL_JSON_MAX_BYTES = 64 << 20 };
 enum orl_result orl_json_read(const struct orl_log *log, const char *path,
                               json_t **out) ORL_CHECK_RESULT;
 // Of the numbers in files that are not integers; so many that none changes.
@@ -53,6 +58,12 @@ enum orl_result orl_json_numbers(const struct orl_json_place *place, const json_
 
 // Copies an array of `count` finite numbers to `values`. False when it is anything else.
 bool orl_json_read_numbers(const json_t *array, size_t count, double *values);
+// The same of an array of `rows` arrays of `columns` numbers, row by row.
+bool orl_json_rows(const json_t *array, size_t rows, size_t columns, double *values);
+// The same of 3 rows of 4 numbers.
+bool orl_json_pose(const json_t *array, struct orl_pose *cam_from_world);
+// A picture's width or height; 0 when the value is missing or not valid.
+int orl_json_side(const json_t *object, const char *key);
 // The number of `key`; 0 when it is absent or not a number.
 double orl_json_value(const json_t *object, const char *key);
 // The text of `key`; NULL when it is absent or not a string.

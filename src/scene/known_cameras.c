@@ -136,31 +136,6 @@ enum orl_result orl_known_add(const struct orl_log *log, const char *file, const
     return ORL_OK;
 }
 
-enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
-                                    const double rgb[3], struct orl_colmap_model *model)
-{
-    struct orl_colmap_point point = {.id = model->point_count + 1};
-    for (int k = 0; k < 3; k++) {
-        if (!(fabs(position[k]) <= ORL_WORLD_MAX) || model->point_count == UINT32_MAX)
-            return ORL_OK;
-        point.position[k] = position[k];
-        point.rgb[k] = (uint8_t)(rgb[k] >= 255 ? 255 : rgb[k] > 0 ? rgb[k] : 0);
-    }
-    ORL_TRY(ORL_GROW(log, model->points, model->point_capacity, model->point_count));
-    model->points[model->point_count++] = point;
-    return ORL_OK;
-}
-
-enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
-                                   struct orl_colmap_model *model)
-{
-    struct orl_colmap_image *seen_by = &model->images[image];
-    ORL_TRY(ORL_GROW(log, seen_by->points, seen_by->point_capacity, seen_by->point_count));
-    seen_by->points[seen_by->point_count++] = point;
-    model->points[point].track_length++;
-    return ORL_OK;
-}
-
 // --- names ---
 
 // Length of the folders, with the last '/', that all pictures' paths have in common.

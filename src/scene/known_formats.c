@@ -161,12 +161,8 @@ void orl_known_say_read(const struct orl_log *log, const char *file, const char 
 static enum orl_result read_if_own(const struct orl_log *log, const char *file, double pixel_centre, bool *own,
                                    struct orl_known_cameras *known)
 {
-    uint8_t *data = NULL;
-    size_t size;
-    json_t *root = NULL;
-    enum orl_result result = orl_file_read(log, file, ORL_KNOWN_FILE_MAX, &data, &size);
-    ORL_THEN(result, orl_json_parse(log, file, data, size, &root));
-    free(data);
+    json_t *root;
+    enum orl_result result = orl_json_load(log, file, ORL_KNOWN_FILE_MAX, &root);
     *own = orl_known_is_own(root);
     if (result == ORL_OK && *own)
         result = orl_known_read_own(log, file, pixel_centre, root, known);

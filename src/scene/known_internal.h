@@ -27,13 +27,6 @@ enum orl_result orl_known_bad(const struct orl_log *log, const char *file, const
 // Appends a camera of a file. It is shared with the previous one when the two are equal.
 enum orl_result orl_known_add(const struct orl_log *log, const char *file, const struct orl_known_camera *camera,
                               struct orl_known_cameras *known) ORL_CHECK_RESULT;
-// Appends a point, unless it is not finite or absurdly far.
-enum orl_result orl_known_add_point(const struct orl_log *log, const double position[3],
-                                    const double rgb[3],
-                                    struct orl_colmap_model *model) ORL_CHECK_RESULT;
-// Notes that an image sees a point.
-enum orl_result orl_known_add_view(const struct orl_log *log, size_t image, uint32_t point,
-                                   struct orl_colmap_model *model) ORL_CHECK_RESULT;
 // Sets the images' names from the pictures' paths.
 enum orl_result orl_known_name_images(const struct orl_log *log, const char *file,
                                       struct orl_known_cameras *known) ORL_CHECK_RESULT;

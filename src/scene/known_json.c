@@ -9,7 +9,6 @@
 #include "core/memory.h"
 #include "core/process.h"
 #include "core/text.h"
-#include "scene/json_views.h"
 #include "scene/known_internal.h"
 #include "scene/manifest.h"
 #include "scene/text_lines.h"
@@ -195,6 +194,33 @@ static enum orl_result add_converted(const struct source *source, const json_t *
     return orl_known_add(source->log, source->path, &camera, known);
 }
 
+// Appends a point, unless it is not finite or absurdly far.
+static enum orl_result add_point(const struct orl_log *log, const double position[3], const double rgb[3],
+                                 struct orl_colmap_model *model)
+{
+    struct orl_colmap_point point = {.id = model->point_count + 1};
+    for (int k = 0; k < 3; k++) {
+        if (!(fabs(position[k]) <= ORL_WORLD_MAX) || model->point_count == UINT32_MAX)
+            return ORL_OK;
+        point.position[k] = position[k];
+        point.rgb[k] = (uint8_t)(rgb[k] >= 255 ? 255 : rgb[k] > 0 ? rgb[k] : 0);
+    }
+    ORL_TRY(ORL_GROW(log, model->points, model->point_capacity, model->point_count));
+    model->points[model->point_count++] = point;
+    return ORL_OK;
+}
+
+// Notes that an image sees a point.
+static enum orl_result add_view(const struct orl_log *log, size_t image, uint32_t point,
+                                struct orl_colmap_model *model)
+{
+    struct orl_colmap_image *seen_by = &model->images[image];
+    ORL_TRY(ORL_GROW(log, seen_by->points, seen_by->point_capacity, seen_by->point_count));
+    seen_by->points[seen_by->point_count++] = point;
+    model->points[point].track_length++;
+    return ORL_OK;
+}
+
 // Reads lines x y z r g b and the indices of the cameras that see the point.
 static enum orl_result read_points(const struct orl_log *log, const char *path,
                                    struct orl_colmap_model *model)
@@ -205,10 +231,10 @@ static enum orl_result read_points(const struct orl_log *log, const char *path,
         double at_rgb[6];
         uint64_t image;
         size_t before = model->point_count;
-        result = orl_text_numbers(&l, at_rgb, 6) ? orl_known_add_point(log, at_rgb, at_rgb + 3, model)
+        result = orl_text_numbers(&l, at_rgb, 6) ? add_point(log, at_rgb, at_rgb + 3, model)
                                                  : orl_text_bad(&l, "not a point");
         while (result == ORL_OK && model->point_count > before && orl_text_id(&l, model->image_count - 1, &image))
-            result = orl_known_add_view(log, (size_t)image, (uint32_t)before, model);
+            result = add_view(log, (size_t)image, (uint32_t)before, model);
     }
     orl_text_close(&l);
     return result;
@@ -243,14 +269,9 @@ static enum orl_result run_script(const struct orl_log *log, const char *dir, co
     // Isolated from the user's modules, with UTF-8 whatever the locale.
     const char *const argv[] = {"python3", "-I", "-S", "-X", "utf8", script, path, centre, dir, NULL};
     const struct orl_process_params params = {.argv = argv};
-    uint8_t *data = NULL;
-    size_t size;
     ORL_TRY(orl_file_write(log, script, orl_known_script, strlen(orl_known_script)));
     ORL_TRY(orl_process_run(log, &params, NULL));
-    enum orl_result result = orl_file_read(log, made, ORL_KNOWN_FILE_MAX, &data, &size);
-    ORL_THEN(result, orl_json_parse(log, made, data, size, root));
-    free(data);
-    return result;
+    return orl_json_load(log, made, ORL_KNOWN_FILE_MAX, root);
 }
 
 enum orl_result orl_known_read_converted(const struct orl_log *log, const char *path, double pixel_centre,

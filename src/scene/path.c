@@ -10,10 +10,9 @@
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "scene/colmap.h"
-#include "scene/json_views.h"
 #include "scene/upright.h"
 
-enum { PATH_FILE_MAX = 64 << 20, PATH_VIEWS_MAX = 1000000 };
+enum { PATH_VIEWS_MAX = 1000000 };
 
 static const double SECONDS_MIN = 0.01, SECONDS_MAX = 3600; // from a keyframe to the next
 
@@ -215,7 +214,7 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
                      double *seconds)
 {
     const json_t *time = json_object_get(key, "seconds");
-    double rows[3][4], eye[3], target[3], up[3] = {0, -1, 0};
+    double eye[3], target[3], up[3] = {0, -1, 0};
     const json_t *fov = json_object_get(key, "fov_y_deg");
     const char *photo = json_string_value(json_object_get(key, "photo"));
     const json_t *matrix = json_object_get(key, "cam_from_world");
@@ -225,12 +224,8 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
             return false;
         *view = scene->photos[index].view;
     } else if (matrix) {
-        if (!orl_json_rows(matrix, 3, 4, &rows[0][0]))
+        if (!orl_json_pose(matrix, &view->cam_from_world))
             return false;
-        for (int i = 0; i < 3; i++) {
-            memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
-            view->cam_from_world.t[i] = rows[i][3];
-        }
     } else {
         const json_t *up_json = json_object_get(key, "up");
         if (!orl_json_read_numbers(json_object_get(key, "position"), 3, eye) ||
@@ -297,6 +292,22 @@ static bool read_nerfstudio_view(const json_t *entry, int width, int height, str
     return true;
 }
 
+// Inria's cameras.json: position is the camera centre, the columns of rotation are the camera's axes,
+// and the principal point is the picture's centre.
+static bool read_inria_view(const json_t *entry, struct orl_view *view)
+{
+    double axes[3][3], centre[3];
+    int width = orl_json_side(entry, "width"), height = orl_json_side(entry, "height");
+    view->camera = (struct orl_camera){
+        .width = width, .height = height, .cx = 0.5 * width, .cy = 0.5 * height,
+        .fx = orl_json_value(entry, "fx"), .fy = orl_json_value(entry, "fy")};
+    if (!orl_json_rows(json_object_get(entry, "rotation"), 3, 3, &axes[0][0]) ||
+        !orl_json_read_numbers(json_object_get(entry, "position"), 3, centre))
+        return false;
+    (void)orl_pose_from_axes(axes, centre, &view->cam_from_world); // check_view reports problems
+    return true;
+}
+
 static enum orl_result read_json(const struct orl_log *log, const struct orl_scene *scene,
                                  const char *file, const json_t *root, struct orl_path *path)
 {
@@ -317,7 +328,7 @@ static enum orl_result read_json(const struct orl_log *log, const struct orl_sce
     for (size_t i = 0; result == ORL_OK && i < path->count; i++) {
         const json_t *entry = json_array_get(entries, i);
         bool ok = nerfstudio ? read_nerfstudio_view(entry, width, height, &path->views[i])
-                             : orl_json_inria_view(entry, &path->views[i]);
+                             : read_inria_view(entry, &path->views[i]);
         result = check_view(log, file, "camera", i, ok, &path->views[i]);
         orl_pose_move(&path->views[i].cam_from_world, scene->origin);
     }
@@ -351,8 +362,6 @@ static enum orl_result read_colmap_text(const struct orl_log *log, const struct 
 enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene *scene,
                               const char *file, struct orl_path *path)
 {
-    uint8_t *text = NULL;
-    size_t size;
     json_t *root = NULL;
     memset(path, 0, sizeof *path);
     if (scene->photo_count < 1)
@@ -361,13 +370,12 @@ enum orl_result orl_path_read(const struct orl_log *log, const struct orl_scene 
     const char *extension = strrchr(file, '.');
     if (extension && strcmp(extension, ".txt") == 0) {
         result = read_colmap_text(log, scene, file, path);
-    } else if ((result = orl_file_read(log, file, PATH_FILE_MAX, &text, &size)) == ORL_OK) {
-        result = orl_json_parse(log, file, text, size, &root);
+    } else {
+        result = orl_json_load(log, file, ORL_JSON_MAX_BYTES, &root);
         ORL_THEN(result, read_json(log, scene, file, root, path));
     }
     if (result != ORL_OK)
         orl_path_finish(path);
     json_decref(root);
-    free(text);
     return result;
 }

@@ -6,7 +6,6 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/text.h"
-#include "scene/json_views.h"
 
 enum { TITLE_MAX = 500, TEXT_MAX = 4000, NOTES_MAX = 200, TOUR_VIEWS_MAX = 2000,
        TOUR_SECONDS_MAX = 3601 };
@@ -46,20 +45,15 @@ static bool read_frame(const json_t *json, struct orl_camera *camera)
 
 static bool read_view(const json_t *json, const struct orl_camera *camera, struct orl_view *view)
 {
-    double rows[3][4];
     const json_t *frame = json_object_get(json, "frame");
     double fov = orl_json_value(json, "fov_y_deg");
-    if (!orl_json_rows(json_object_get(json, "cam_from_world"), 3, 4, &rows[0][0]) ||
+    if (!orl_json_pose(json_object_get(json, "cam_from_world"), &view->cam_from_world) ||
         !(fov > 1 && fov < 170))
         return false;
     view->camera = *camera;
     view->camera.fx = view->camera.fy = 0.5 * camera->height / tan(0.5 * fov * pi / 180);
     view->camera.cx = 0.5 * camera->width;
     view->camera.cy = 0.5 * camera->height;
-    for (int i = 0; i < 3; i++) {
-        memcpy(view->cam_from_world.r[i], rows[i], 3 * sizeof(double));
-        view->cam_from_world.t[i] = rows[i][3];
-    }
     return (!frame || read_frame(frame, &view->camera)) && !orl_view_problem(view);
 }
 
