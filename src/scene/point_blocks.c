@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/order.h"
@@ -187,26 +188,6 @@ enum orl_result orl_point_order(const struct orl_log *log, const struct orl_poin
 
 // --- blocks ---
 
-// Writes the texels of a block, which shaders/proxy/splat_cull.comp explains.
-static void describe_block(float (*const positions)[3], size_t count, const struct point_frame *frame,
-                           float block[ORL_BLOCK_VEC4S][4])
-{
-    for (int k = 0; k < 3; k++) {
-        float low = positions[0][k], high = low;
-        for (size_t i = 0; i < count; i++) {
-            low = fminf(low, positions[i][k]);
-            high = fmaxf(high, positions[i][k]);
-        }
-        block[0][k] = 0.5f * low + 0.5f * high;
-        // Measured from the rounded middle, so that no point lies outside.
-        block[1][k] = fmaxf(high - block[0][k], block[0][k] - low);
-        block[2][k] = frame->origin[k];
-    }
-    block[0][3] = 0;
-    block[1][3] = (float)count;
-    block[2][3] = frame->step;
-}
-
 struct point_frame orl_point_block_frame(const float texels[ORL_BLOCK_VEC4S][4])
 {
     return (struct point_frame){{texels[2][0], texels[2][1], texels[2][2]}, texels[2][3]};
@@ -215,20 +196,25 @@ struct point_frame orl_point_block_frame(const float texels[ORL_BLOCK_VEC4S][4])
 void orl_point_block_make(const struct orl_points *points, const uint32_t *order,
                           struct point_block *block)
 {
-    float positions[BLOCK][3];
-    struct point_range range = orl_point_range_none();
+    struct point_range range = orl_point_range_none(), drawn = range; // as codes have the positions
     size_t count = 0;
     for (; count < BLOCK && order[count] != UINT32_MAX; count++)
         orl_point_range_add(&range, points->position[order[count]], points->radius[order[count]]);
     const struct point_frame frame = orl_point_frame(&range);
     for (size_t i = 0; i < BLOCK; i++) {
         size_t from = order[i];
+        float position[3];
         block->codes[i] = orl_point_code_none;
         if (i >= count)
             continue;
         block->codes[i] = orl_point_encode(&frame, points->position[from], points->normal[from],
                                            points->color[from], points->radius[from]);
-        orl_point_decode_position(&frame, block->codes[i].geometry, positions[i]);
+        orl_point_decode_position(&frame, block->codes[i].geometry, position);
+        orl_point_range_add(&drawn, position, 0);
     }
-    describe_block(positions, count, &frame, block->texels);
+    orl_point_range_box(&drawn, block->texels[0], block->texels[1]);
+    block->texels[0][3] = 0;
+    block->texels[1][3] = (float)count;
+    memcpy(block->texels[2], frame.origin, sizeof frame.origin);
+    block->texels[2][3] = frame.step;
 }

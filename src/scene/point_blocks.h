@@ -28,7 +28,7 @@ enum orl_result orl_point_order(const struct orl_log *log, const struct orl_poin
                                 const struct point_cube *cube, size_t size, uint32_t **order,
                                 size_t *count) ORL_CHECK_RESULT;
 
-// A block: its points, and what shaders/proxy/splat_cull.comp reads of it.
+// A block: its points, and what shaders/proxy/splat_cull.comp reads of it and explains.
 struct point_block {
     struct point_code codes[ORL_BLOCK_POINTS];
     float texels[ORL_BLOCK_VEC4S][4];

@@ -36,6 +36,14 @@ void orl_point_range_add(struct point_range *range, const float position[3], flo
     }
 }
 
+void orl_point_range_box(const struct point_range *range, float middle[3], float extent[3])
+{
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5f * range->low[k] + 0.5f * range->high[k];
+        extent[k] = fmaxf(range->high[k] - middle[k], middle[k] - range->low[k]);
+    }
+}
+
 static float radius_steps(int code)
 {
     return exp2f((float)code / CODES_PER_OCTAVE);

@@ -21,6 +21,8 @@ struct point_range {
 };
 struct point_range orl_point_range_none(void);
 void orl_point_range_add(struct point_range *range, const float position[3], float radius);
+// The middle and half the size, measured from the rounded middle, so that no position lies outside.
+void orl_point_range_box(const struct point_range *range, float middle[3], float extent[3]);
 // True if a frame for these points resolves positions to a sixteenth of the least radius, so that
 // storage makes no difference to a picture. False: they are better stored as several blocks.
 bool orl_point_range_is_precise(const struct point_range *range);

@@ -84,7 +84,7 @@ static enum orl_result find_radii(struct writer *w)
 static struct orl_lod_page describe_page(const struct orl_lod_data *page)
 {
     struct orl_lod_page entry = {0};
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    struct point_range range = orl_point_range_none();
     double squares = 0; // of radii
     for (size_t b = 0; b < ORL_LOD_BLOCKS; b++) {
         const float(*block)[4] = page->blocks[b];
@@ -93,18 +93,17 @@ static struct orl_lod_page describe_page(const struct orl_lod_data *page)
         if (!(count > 0))
             continue;
         entry.count += (uint32_t)count;
-        for (int k = 0; k < 3; k++) {
-            low[k] = fminf(low[k], block[0][k] - block[1][k]);
-            high[k] = fmaxf(high[k], block[0][k] + block[1][k]);
+        for (int side = -1; side <= 1; side += 2) {
+            float corner[3];
+            for (int k = 0; k < 3; k++)
+                corner[k] = block[0][k] + (float)side * block[1][k];
+            orl_point_range_add(&range, corner, 0);
         }
         for (size_t i = 0; i < (size_t)count; i++)
             squares += pow((double)orl_point_decode_radius(&frame, page->geometry[b][i]), 2);
     }
-    for (int k = 0; entry.count && k < 3; k++) {
-        entry.middle[k] = 0.5f * low[k] + 0.5f * high[k];
-        // Measured from the rounded middle, so that no block lies outside.
-        entry.extent[k] = fmaxf(high[k] - entry.middle[k], entry.middle[k] - low[k]);
-    }
+    if (entry.count)
+        orl_point_range_box(&range, entry.middle, entry.extent);
     entry.radius = entry.count ? (float)sqrt(squares / entry.count) : 0;
     return entry;
 }
