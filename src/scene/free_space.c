@@ -23,34 +23,34 @@ static const double same_depth = 0.02;  // fraction of depth, at least
 static const double same_cells = 4;     // sizes of a cell: surfaces at up to some 70 degrees
 static const double through_share = 0.1, confirm_share = 0.3; // nearby points, of those behind
 
+// A point as one photograph sees it.
+struct seen {
+    float at[3]; // pixel and depth
+    int32_t cell; // -1: outside of the picture
+    uint32_t point;
+};
 // The points that one photograph sees, sorted into cells of its picture.
 struct cells {
     int columns, rows;
     double side_px;
-    uint32_t *start; // of each cell in `point`, and the end of the last one
-    uint32_t *point; // indices
-    int32_t *cell;   // of each point; -1: outside of the picture
-    float (*at)[3];  // pixel and depth of each point
-    float (*sorted)[3]; // the same in the order of `point`
+    uint32_t *start;     // of each cell in `sorted`, and the end of the last one
+    struct seen *points; // all
+    struct seen *sorted; // those in the picture, by their cells
 };
 
 static enum orl_result cells_init(const struct orl_log *log, size_t points, size_t cells,
                                   struct cells *c)
 {
     c->start = orl_array(log, cells + 2, sizeof *c->start);
-    c->point = orl_array(log, points, sizeof *c->point);
-    c->cell = orl_array(log, points, sizeof *c->cell);
-    c->at = orl_array(log, points, sizeof *c->at);
+    c->points = orl_array(log, points, sizeof *c->points);
     c->sorted = orl_array(log, points, sizeof *c->sorted);
-    return c->start && c->point && c->cell && c->at && c->sorted ? ORL_OK : ORL_ERR_MEMORY;
+    return c->start && c->points && c->sorted ? ORL_OK : ORL_ERR_MEMORY;
 }
 
 static void cells_finish(struct cells *c)
 {
     free(c->start);
-    free(c->point);
-    free(c->cell);
-    free(c->at);
+    free(c->points);
     free(c->sorted);
 }
 
@@ -58,24 +58,24 @@ static void cells_finish(struct cells *c)
 static void project(const struct orl_points *points, const struct orl_view *view, struct cells *c)
 {
     const struct orl_camera *camera = &view->camera;
-    size_t seen = 0;
+    size_t inside_count = 0;
     for (size_t i = 0; i < points->count; i++) {
         double pixel[2] = {0, 0}, z = 0;
         bool inside = orl_point_project(view, points->position[i], pixel, &z);
-        c->cell[i] = inside ? 0 : -1; // until the size of a cell is known
-        c->at[i][0] = (float)pixel[0];
-        c->at[i][1] = (float)pixel[1];
-        c->at[i][2] = (float)z;
-        seen += inside;
+        c->points[i] = (struct seen){.at = {(float)pixel[0], (float)pixel[1], (float)z}, .point = (uint32_t)i,
+                                     .cell = inside ? 0 : -1}; // until the size of a cell is known
+        inside_count += inside;
     }
     double pixels = (double)camera->width * camera->height;
-    c->side_px = fmax(cell_min_px, sqrt(PER_CELL * pixels / (double)(seen ? seen : 1)));
+    c->side_px = fmax(cell_min_px, sqrt(PER_CELL * pixels / (double)(inside_count ? inside_count : 1)));
     c->columns = (int)(camera->width / c->side_px) + 1;
     c->rows = (int)(camera->height / c->side_px) + 1;
-    for (size_t i = 0; i < points->count; i++)
-        if (c->cell[i] >= 0)
-            c->cell[i] = (int)((double)c->at[i][1] / c->side_px) * c->columns +
-                         (int)((double)c->at[i][0] / c->side_px);
+    for (size_t i = 0; i < points->count; i++) {
+        struct seen *seen = &c->points[i];
+        if (seen->cell >= 0)
+            seen->cell = (int)((double)seen->at[1] / c->side_px) * c->columns +
+                         (int)((double)seen->at[0] / c->side_px);
+    }
 }
 
 // Sorts the points by cell (counting sort).
@@ -84,26 +84,22 @@ static void sort(size_t points, struct cells *c)
     size_t count = (size_t)c->columns * (size_t)c->rows;
     memset(c->start, 0, (count + 2) * sizeof *c->start);
     for (size_t i = 0; i < points; i++)
-        if (c->cell[i] >= 0)
-            c->start[c->cell[i] + 2]++;
+        if (c->points[i].cell >= 0)
+            c->start[c->points[i].cell + 2]++;
     for (size_t k = 2; k < count + 2; k++)
         c->start[k] += c->start[k - 1];
-    for (size_t i = 0; i < points; i++) {
-        if (c->cell[i] < 0)
-            continue;
-        uint32_t at = c->start[c->cell[i] + 1]++;
-        c->point[at] = (uint32_t)i;
-        memcpy(c->sorted[at], c->at[i], sizeof *c->sorted);
-    }
+    for (size_t i = 0; i < points; i++)
+        if (c->points[i].cell >= 0)
+            c->sorted[c->start[c->points[i].cell + 1]++] = c->points[i];
 }
 
-// Counts the points around point i in the picture that are as near as it is, without itself, and
+// Counts the points around a point in the picture that are as near as it is, without itself, and
 // those behind it on each side.
-static void count_around(const struct cells *c, size_t i, double tolerance, size_t *near,
+static void count_around(const struct cells *c, const struct seen *seen, double tolerance, size_t *near,
                          size_t far[SIDES])
 {
-    int column = c->cell[i] % c->columns, row = c->cell[i] / c->columns;
-    const float *at = c->at[i];
+    int column = seen->cell % c->columns, row = seen->cell / c->columns;
+    const float *at = seen->at;
     float low = at[2] * (float)(1 - tolerance), high = at[2] * (float)(1 + tolerance);
     *near = 0;
     memset(far, 0, SIDES * sizeof *far);
@@ -112,9 +108,9 @@ static void count_around(const struct cells *c, size_t i, double tolerance, size
             const uint32_t *cell = &c->start[y * c->columns + x];
             const uint32_t step = (cell[1] - cell[0]) / VISITED_MAX + 1;
             for (uint32_t k = cell[0]; k < cell[1]; k += step) {
-                const float *other = c->sorted[k];
+                const float *other = c->sorted[k].at;
                 far[2 * (other[1] > at[1]) + (other[0] > at[0])] += other[2] > high ? step : 0;
-                *near += other[2] >= low && other[2] <= high ? step - (c->point[k] == i) : 0;
+                *near += other[2] >= low && other[2] <= high ? step - (c->sorted[k].point == seen->point) : 0;
             }
         }
     }
@@ -129,9 +125,9 @@ static enum orl_result vote(const struct orl_progress *progress, const struct ce
             return ORL_ERR_CANCELLED;
         size_t near, far[SIDES], all = 0;
         bool around = true;
-        if (c->cell[i] < 0)
+        if (c->points[i].cell < 0)
             continue;
-        count_around(c, i, tolerance, &near, far);
+        count_around(c, &c->points[i], tolerance, &near, far);
         for (int k = 0; k < SIDES; k++) {
             all += far[k];
             around = around && far[k] >= FAR_MIN;
