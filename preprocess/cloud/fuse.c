@@ -146,7 +146,7 @@ static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clust
     ORL_THEN(result, orl_point_writer_end(&writer));
     if (result == ORL_ERR_IO)
         orl_job_hint_disk(job);
-    orl_point_writer_finish(&writer);
+    orl_atomic_abort(&writer.file);
     return result;
 }
 

@@ -30,7 +30,7 @@ struct orl_point_writer {
     bool small;
     const double *origin; // added to positions, which become doubles; NULL: floats as they are
 };
-// count: of all points. `path` must outlive the writer.
+// count: of all points. `path` must outlive the writer, whose file is released with orl_atomic_abort.
 enum orl_result orl_point_writer_begin(const struct orl_log *log, const char *path, uint64_t count,
                                        bool small, const double *origin,
                                        struct orl_point_writer *writer) ORL_CHECK_RESULT;
@@ -38,7 +38,5 @@ enum orl_result orl_point_writer_add(struct orl_point_writer *writer,
                                      const struct orl_points *points) ORL_CHECK_RESULT;
 // After all points: gives the file its name.
 enum orl_result orl_point_writer_end(struct orl_point_writer *writer) ORL_CHECK_RESULT;
-// Releases everything; a file that has not ended is removed. Accepts a zeroed struct.
-void orl_point_writer_finish(struct orl_point_writer *writer);
 
 #endif

@@ -136,11 +136,6 @@ enum orl_result orl_point_writer_end(struct orl_point_writer *writer)
     return orl_atomic_commit(writer->log, &writer->file);
 }
 
-void orl_point_writer_finish(struct orl_point_writer *writer)
-{
-    orl_atomic_abort(&writer->file);
-}
-
 enum orl_result orl_points_write(const struct orl_log *log, const char *path,
                                  const struct orl_points *points, bool small, const double *origin)
 {
@@ -150,7 +145,7 @@ enum orl_result orl_points_write(const struct orl_log *log, const char *path,
         orl_point_writer_begin(log, path, points->count, small, far ? origin : NULL, &writer);
     ORL_THEN(result, orl_point_writer_add(&writer, points));
     ORL_THEN(result, orl_point_writer_end(&writer));
-    orl_point_writer_finish(&writer);
+    orl_atomic_abort(&writer.file);
     return result;
 }
 
