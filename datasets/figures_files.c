@@ -147,7 +147,7 @@ enum orl_result orl_figures_run(const struct orl_log *log, const struct orl_prog
     ORL_TRY_MEMORY(views);
     orl_figures_views(params, views);
     job.views = views;
-    enum orl_result result = orl_new_dir_begin(log, out, &dir);
+    enum orl_result result = orl_new_dir_begin(log, out, false, &dir);
     job.dir = dir.path;
     ORL_THEN(result, write_all(&job));
     ORL_THEN(result, orl_new_dir_finish(log, &dir));

@@ -213,8 +213,8 @@ enum orl_result orl_synth_run(struct orl_gpu *gpu, const struct orl_progress *pr
     ORL_TRY(orl_synth_check(job.log, params));
     struct orl_view *views = orl_array(job.log, (size_t)params->count, sizeof *views);
     ORL_TRY_MEMORY(views);
-    enum orl_result result = orl_new_dir_begin(job.log, photos, &photos_dir);
-    ORL_THEN(result, orl_new_dir_begin(job.log, truth, &truth_dir));
+    enum orl_result result = orl_new_dir_begin(job.log, photos, false, &photos_dir);
+    ORL_THEN(result, orl_new_dir_begin(job.log, truth, false, &truth_dir));
     job.photos = photos_dir.path;
     job.truth = truth_dir.path;
     if (!params->views)

@@ -84,7 +84,7 @@ enum orl_result orl_import(const struct orl_log *log, const struct orl_import_pa
     if (result == ORL_OK)
         resolve(&job, &resolved);
     ORL_THEN(result, orl_import_find_all(&job));
-    ORL_THEN(result, orl_new_dir_begin(log, params->out, &job.new_dir));
+    ORL_THEN(result, orl_new_dir_begin(log, params->out, false, &job.new_dir));
     job.dir = job.new_dir.path;
     ORL_THEN(result, fill(&job));
     orl_new_dir_abort(log, &job.new_dir);

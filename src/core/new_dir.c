@@ -92,10 +92,26 @@ static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
     return orl_dir_make(log, orl_path_print(dir->path, dir->outer, "new"));
 }
 
-static enum orl_result begin(const struct orl_log *log, const char *out, bool over,
-                             struct orl_new_dir *dir)
+static enum orl_result refuse_used(const struct orl_log *log, const char *out)
 {
-    *dir = (struct orl_new_dir){.fd = -1};
+    struct orl_names names = {0};
+    enum orl_result result = ORL_OK;
+    if (orl_path_is_file(out))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", out);
+    if (orl_path_is_dir(out))
+        result = orl_dir_list(log, out, &names);
+    if (result == ORL_OK && names.count)
+        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: not empty; choose another folder", out);
+    orl_names_finish(&names);
+    return result;
+}
+
+enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, bool over,
+                                  struct orl_new_dir *dir)
+{
+    *dir = (struct orl_new_dir){.fd = -1, .over = over};
+    if (!over)
+        ORL_TRY(refuse_used(log, out));
     ORL_TRY(orl_path_follow(log, ORL_PATH("", "%.*s", orl_path_bare(out), out), dir->out));
     const char *name = orl_path_name(dir->out);
     const char *parent = name == dir->out ? "." : ORL_PATH("", "%.*s", (int)(name - dir->out), dir->out);
@@ -110,28 +126,6 @@ static enum orl_result begin(const struct orl_log *log, const char *out, bool ov
     return result;
 }
 
-enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
-                                  struct orl_new_dir *dir)
-{
-    struct orl_names names = {0};
-    enum orl_result result = ORL_OK;
-    *dir = (struct orl_new_dir){.fd = -1};
-    if (orl_path_is_file(out))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "%s: is a file", out);
-    if (orl_path_is_dir(out))
-        result = orl_dir_list(log, out, &names);
-    if (result == ORL_OK && names.count)
-        result = orl_fail(log, ORL_ERR_ARGUMENT, "%s: not empty; choose another folder", out);
-    orl_names_finish(&names);
-    return result == ORL_OK ? begin(log, out, false, dir) : result;
-}
-
-enum orl_result orl_new_dir_begin_over(const struct orl_log *log, const char *out,
-                                       struct orl_new_dir *dir)
-{
-    return begin(log, out, true, dir);
-}
-
 static void close_dir(const struct orl_log *log, struct orl_new_dir *dir)
 {
     if (*dir->outer && orl_dir_remove(log, dir->outer) != ORL_OK)
@@ -139,14 +133,6 @@ static void close_dir(const struct orl_log *log, struct orl_new_dir *dir)
     if (dir->fd >= 0)
         close(dir->fd);
     *dir = (struct orl_new_dir){.fd = -1};
-}
-
-enum orl_result orl_new_dir_finish(const struct orl_log *log, struct orl_new_dir *dir)
-{
-    ORL_TRY(orl_flush(log, dir->path));
-    ORL_TRY(name_dir(log, dir->path, dir->out));
-    close_dir(log, dir);
-    return ORL_OK;
 }
 
 // Where names cannot be exchanged. The old folder may be swept once nothing needs it.
@@ -162,12 +148,15 @@ static enum orl_result replace_aside(const struct orl_log *log, const struct orl
     return result;
 }
 
-enum orl_result orl_new_dir_replace(const struct orl_log *log, struct orl_new_dir *dir)
+enum orl_result orl_new_dir_finish(const struct orl_log *log, struct orl_new_dir *dir)
 {
     struct stat st;
-    if (lstat(dir->out, &st) != 0 && errno == ENOENT)
-        return orl_new_dir_finish(log, dir);
     ORL_TRY(orl_flush(log, dir->path));
+    if (!dir->over || (lstat(dir->out, &st) != 0 && errno == ENOENT)) {
+        ORL_TRY(name_dir(log, dir->path, dir->out));
+        close_dir(log, dir);
+        return ORL_OK;
+    }
     (void)!chmod(dir->path, st.st_mode & 07777); // the new folder keeps the old permissions
     enum orl_result result = ORL_OK;
     if (renameat2(AT_FDCWD, dir->path, AT_FDCWD, dir->out, RENAME_EXCHANGE) != 0)

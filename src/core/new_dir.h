@@ -13,22 +13,19 @@ struct orl_new_dir {
     char out[ORL_PATH_SIZE];   // its final name
     char outer[ORL_PATH_SIZE]; // the folder around `path`; "": none has been made
     int fd;                    // of `outer`, which is locked: no other run takes it for one that was left
+    bool over;                 // replaces what has its final name
 };
 
-// Refuses an `out` that is a file or a folder that is not empty.
-enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out,
+// Refuses an `out` that is a file or a folder that is not empty, unless the new folder goes `over` it.
+// Then, where names cannot be exchanged and an earlier run ended between two renames, this gives `out`
+// its name back.
+enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, bool over,
                                   struct orl_new_dir *dir) ORL_CHECK_RESULT;
-// The same, but whatever there is at `out` is accepted, for orl_new_dir_replace. Where names cannot
-// be exchanged and an earlier run ended between two renames, this gives `out` its name back.
-enum orl_result orl_new_dir_begin_over(const struct orl_log *log, const char *out,
-                                       struct orl_new_dir *dir) ORL_CHECK_RESULT;
-// Gives the folder its final name, which an empty folder may have.
+// Gives the folder its final name, which an empty folder may have. One that it goes over is removed: at
+// every moment one of the two is whole under that name, except between two renames on drives that cannot
+// exchange names.
 enum orl_result orl_new_dir_finish(const struct orl_log *log,
                                    struct orl_new_dir *dir) ORL_CHECK_RESULT;
-// Gives the folder its final name; a folder that has that name is removed. At every moment one of
-// the two is whole under that name, except between two renames on drives that cannot exchange names.
-enum orl_result orl_new_dir_replace(const struct orl_log *log,
-                                    struct orl_new_dir *dir) ORL_CHECK_RESULT;
 // Removes a folder that has not been finished, with a warning if that fails. Does nothing to one
 // that has been, and to a zeroed struct.
 void orl_new_dir_abort(const struct orl_log *log, struct orl_new_dir *dir);

@@ -149,7 +149,7 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
                         "are in points.lod: remove it, and where there is no points.ply, oriel "
                         "prepare --resume with a larger --max-ram writes one", scene->dir);
     struct orl_new_dir part = {.fd = -1};
-    enum orl_result result = orl_new_dir_begin(log, params->out, &part);
+    enum orl_result result = orl_new_dir_begin(log, params->out, false, &part);
     struct trim_search s = {.gpu = gpu, .log = log, .scene = scene, .params = params, .trim = trim,
                             .part = part.path, .start_s = orl_time_s()};
     ORL_THEN(result, run(&s));

@@ -69,7 +69,7 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
 ORL_EXPORT_WRITER(orl_export_nerfstudio)
 {
     struct orl_new_dir dir;
-    enum orl_result result = orl_new_dir_begin(log, params->out, &dir);
+    enum orl_result result = orl_new_dir_begin(log, params->out, false, &dir);
     ORL_THEN(result, fill(log, progress, scene, dir.path));
     ORL_THEN(result, orl_new_dir_finish(log, &dir));
     orl_new_dir_abort(log, &dir);

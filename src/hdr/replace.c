@@ -141,7 +141,7 @@ enum orl_result orl_hdr_replace_series(struct orl_hdr *hdr,
     struct replacement r = {.hdr = hdr, .params = params, .progress = progress,
                             .subset = {.log = log, .scene = hdr->scene}};
     enum orl_result result = choose(&r);
-    ORL_THEN(result, orl_new_dir_begin(log, params->out, &r.new_dir));
+    ORL_THEN(result, orl_new_dir_begin(log, params->out, false, &r.new_dir));
     r.subset.dir = r.new_dir.path;
     ORL_THEN(result, orl_subset_begin(&r.subset));
     ORL_THEN(result, write_photos(&r));

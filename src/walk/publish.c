@@ -122,7 +122,7 @@ static enum orl_result replace_site(const struct site *site, struct orl_new_dir 
 {
     ORL_TRY(orl_site_list(site));
     ORL_TRY(orl_site_keep(site, dir->out));
-    return orl_new_dir_replace(site->log, dir);
+    return orl_new_dir_finish(site->log, dir);
 }
 
 enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
@@ -136,7 +136,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
     struct orl_new_dir dir;
     struct site site = {.log = log, .scene = scene, .params = &params, .gpu = gpu,
                         .report = report, .dir = dir.path, .folder = ""};
-    enum orl_result result = orl_new_dir_begin_over(log, params.out, &dir);
+    enum orl_result result = orl_new_dir_begin(log, params.out, true, &dir);
     ORL_THEN(result, check_out(log, params.out, params.single_file));
     ORL_THEN(result, orl_walk_settings_read(log, scene, &site.settings));
     if (result == ORL_OK)

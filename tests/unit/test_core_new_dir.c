@@ -53,13 +53,11 @@ static void leaves_what_is_not_its_own(void **state)
     }
     for (int round = 0; round < 3; round++) { // a new folder, one refused, one over the other
         struct orl_new_dir new;
-        enum orl_result result = round < 2 ? orl_new_dir_begin(NULL, out, &new)
-                                           : orl_new_dir_begin_over(NULL, out, &new);
+        enum orl_result result = orl_new_dir_begin(NULL, out, round == 2, &new);
         assert_int_equal(result, round == 1 ? ORL_ERR_ARGUMENT : ORL_OK);
         if (result == ORL_OK) {
             put(new.path, "file", "new");
-            assert_int_equal(round ? orl_new_dir_replace(NULL, &new)
-                                   : orl_new_dir_finish(NULL, &new), ORL_OK);
+            assert_int_equal(orl_new_dir_finish(NULL, &new), ORL_OK);
         }
         orl_new_dir_abort(NULL, &new);
     }
@@ -78,16 +76,16 @@ static void replaces_and_aborts(void **state)
     char *out = test_path(dir, "out"), *slashed = test_path(dir, "out//");
     struct orl_new_dir new;
     for (int round = 0; round < 2; round++) { // a new name, then one that is there
-        assert_int_equal(orl_new_dir_begin_over(NULL, slashed, &new), ORL_OK);
+        assert_int_equal(orl_new_dir_begin(NULL, slashed, true, &new), ORL_OK);
         put(new.path, "file", round ? "b" : "a");
-        assert_int_equal(orl_new_dir_replace(NULL, &new), ORL_OK);
+        assert_int_equal(orl_new_dir_finish(NULL, &new), ORL_OK);
         expect(out, "file", round ? "b" : "a");
         assert_int_equal(chmod(out, 0750), 0);
     }
     struct stat st;
     assert_int_equal(stat(out, &st), 0);
     assert_int_equal(st.st_mode & 0777, 0750);
-    assert_int_equal(orl_new_dir_begin_over(NULL, out, &new), ORL_OK);
+    assert_int_equal(orl_new_dir_begin(NULL, out, true, &new), ORL_OK);
     put(new.path, "file", "c");
     orl_new_dir_abort(NULL, &new);
     orl_new_dir_abort(NULL, &new);
@@ -105,7 +103,7 @@ static void restores(void **state)
     struct orl_new_dir new;
     assert_int_equal(orl_dir_make(NULL, old), ORL_OK);
     put(old, "file", "old");
-    assert_int_equal(orl_new_dir_begin_over(NULL, out, &new), ORL_OK);
+    assert_int_equal(orl_new_dir_begin(NULL, out, true, &new), ORL_OK);
     orl_new_dir_abort(NULL, &new);
     expect(out, "file", "old");
     assert_int_equal(test_count_entries(dir), 1);
@@ -121,9 +119,9 @@ static void goes_through_links(void **state)
     for (int round = 0; round < 2; round++) {
         struct orl_new_dir new;
         struct stat st;
-        assert_int_equal(orl_new_dir_begin_over(NULL, link, &new), ORL_OK);
+        assert_int_equal(orl_new_dir_begin(NULL, link, true, &new), ORL_OK);
         put(new.path, "file", round ? "b" : "a");
-        assert_int_equal(orl_new_dir_replace(NULL, &new), ORL_OK);
+        assert_int_equal(orl_new_dir_finish(NULL, &new), ORL_OK);
         assert_int_equal(lstat(link, &st), 0);
         assert_true(S_ISLNK(st.st_mode));
         expect(real, "file", round ? "b" : "a");
@@ -139,15 +137,15 @@ static void one_at_a_time(void **state)
     (void)state;
     char *out = test_path(dir, "out"), *other = test_path(dir, "other");
     struct orl_new_dir first, second, third;
-    assert_int_equal(orl_new_dir_begin(NULL, out, &first), ORL_OK);
+    assert_int_equal(orl_new_dir_begin(NULL, out, false, &first), ORL_OK);
     assert_int_equal(utime(first.outer, &(struct utimbuf){1, 1}), 0);
-    assert_int_equal(orl_new_dir_begin(NULL, out, &second), ORL_ERR_ARGUMENT);
-    assert_int_equal(orl_new_dir_begin_over(NULL, out, &second), ORL_ERR_ARGUMENT);
-    assert_int_equal(orl_new_dir_begin(NULL, other, &third), ORL_OK);
+    assert_int_equal(orl_new_dir_begin(NULL, out, false, &second), ORL_ERR_ARGUMENT);
+    assert_int_equal(orl_new_dir_begin(NULL, out, true, &second), ORL_ERR_ARGUMENT);
+    assert_int_equal(orl_new_dir_begin(NULL, other, false, &third), ORL_OK);
     assert_true(orl_path_is_dir(first.path)); // nor has it been swept
     orl_new_dir_abort(NULL, &third);
     close(first.fd); // as when the program is killed
-    assert_int_equal(orl_new_dir_begin(NULL, other, &third), ORL_OK);
+    assert_int_equal(orl_new_dir_begin(NULL, other, false, &third), ORL_OK);
     assert_false(orl_path_is_dir(first.path));
     orl_new_dir_abort(NULL, &third);
     first.fd = -1;
