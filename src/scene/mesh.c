@@ -144,29 +144,19 @@ enum orl_result orl_mesh_set_normals(const struct orl_log *log, struct orl_mesh 
     return ORL_OK;
 }
 
-// Drops the vertices that no triangle uses. The others keep their order.
+// Drops the vertices that no triangle uses. The others come in the order in which triangles use them.
 static enum orl_result drop_unused(const struct orl_log *log, struct orl_mesh *mesh)
 {
-    uint32_t *to = orl_array(log, mesh->vertex_count, sizeof *to);
+    size_t all = mesh->vertex_count, corners = 3 * mesh->triangle_count;
+    uint32_t *to = orl_array(log, all, sizeof *to), *first = mesh->triangle[0];
     ORL_TRY_MEMORY(to);
-    for (size_t i = 0; i < mesh->triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            to[mesh->triangle[i][k]] = 1;
-    uint32_t kept = 0;
-    for (size_t i = 0; i < mesh->vertex_count; i++) {
-        if (!to[i])
-            continue;
-        memmove(mesh->position[kept], mesh->position[i], sizeof *mesh->position);
-        if (mesh->normal)
-            memmove(mesh->normal[kept], mesh->normal[i], sizeof *mesh->normal);
-        if (mesh->color)
-            memmove(mesh->color[kept], mesh->color[i], sizeof *mesh->color);
-        to[i] = kept++;
-    }
-    mesh->vertex_count = kept;
-    for (size_t i = 0; i < mesh->triangle_count; i++)
-        for (int k = 0; k < 3; k++)
-            mesh->triangle[i][k] = to[mesh->triangle[i][k]];
+    mesh->vertex_count = meshopt_optimizeVertexFetchRemap(to, first, corners, all);
+    meshopt_remapVertexBuffer(mesh->position, mesh->position, all, sizeof *mesh->position, to);
+    if (mesh->normal)
+        meshopt_remapVertexBuffer(mesh->normal, mesh->normal, all, sizeof *mesh->normal, to);
+    if (mesh->color)
+        meshopt_remapVertexBuffer(mesh->color, mesh->color, all, sizeof *mesh->color, to);
+    meshopt_remapIndexBuffer(first, first, corners, to);
     free(to);
     return ORL_OK;
 }
