@@ -53,12 +53,10 @@ json_t *orl_stage_radii_settings(const struct orl_job *job)
 static enum orl_result write_whole(struct orl_job *job, const struct orl_radii_params *params,
                                    const struct viewers *viewers, const char *in, size_t *left)
 {
-    const struct orl_radii_limits limits = orl_radii_limits_of(params);
     struct orl_points points = {0};
     enum orl_result result = orl_points_read(job->log, in, NULL, &points);
-    ORL_THEN(result, orl_points_set_radii(job->log, job->progress, params, viewers->views, viewers->count,
-                                          &points));
-    ORL_THEN(result, orl_points_limit_radii(job->log, &limits, viewers->views, viewers->count, &points));
+    ORL_THEN(result, orl_points_find_radii(job->log, job->progress, params, viewers->views, viewers->count,
+                                           &points));
     ORL_THEN(result, orl_points_write(job->log, ORL_PATH(job->dir, "points.ply"), &points, false, NULL));
     if (result == ORL_OK)
         result = orl_job_remove(job, ORL_LOD_NAME); // levels of the points before these

@@ -77,6 +77,7 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
         known += points->radius[i] > 0;
     if (known)
         return ORL_OK;
+    const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
     struct orl_view *views = orl_array(job->log, job->view_count, sizeof *views);
     ORL_TRY_MEMORY(views);
     for (size_t i = 0; i < job->view_count; i++)
@@ -84,7 +85,7 @@ static enum orl_result complete_points(const struct import_job *job, struct orl_
             views[count++] = view_of(job, i);
     enum orl_result result =
         orl_points_drop_in_free_space(job->log, job->progress, views, count, points);
-    ORL_THEN(result, orl_points_find_radii(job->log, job->progress, views, count, points));
+    ORL_THEN(result, orl_points_find_radii(job->log, job->progress, &params, views, count, points));
     free(views);
     return result;
 }

@@ -128,12 +128,10 @@ enum orl_result orl_points_limit_radii(const struct orl_log *log,
 }
 
 enum orl_result orl_points_find_radii(const struct orl_log *log, const struct orl_progress *progress,
-                                      const struct orl_view *views, size_t view_count,
-                                      struct orl_points *points)
+                                      const struct orl_radii_params *params, const struct orl_view *views,
+                                      size_t view_count, struct orl_points *points)
 {
-    enum orl_result result = orl_points_set_radii(log, progress, &(struct orl_radii_params){ORL_RADII_DEFAULTS},
-                                                  views, view_count, points);
-    ORL_THEN(result, orl_points_limit_radii(log, &(struct orl_radii_limits){ORL_RADII_LIMITS_DEFAULTS},
-                                            views, view_count, points));
-    return result;
+    const struct orl_radii_limits limits = orl_radii_limits_of(params);
+    ORL_TRY(orl_points_set_radii(log, progress, params, views, view_count, points));
+    return orl_points_limit_radii(log, &limits, views, view_count, points);
 }

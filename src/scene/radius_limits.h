@@ -29,10 +29,10 @@ enum orl_result orl_points_limit_radii(const struct orl_log *log,
                                        const struct orl_view *views, size_t view_count,
                                        struct orl_points *points) ORL_CHECK_RESULT;
 
-// Sets radii and limits them, both with their defaults, for a cloud that these photographs see.
+// Sets radii and limits them as orl_radii_limits_of says, for a cloud that these photographs see.
 enum orl_result orl_points_find_radii(const struct orl_log *log, const struct orl_progress *progress,
-                                      const struct orl_view *views, size_t view_count,
-                                      struct orl_points *points) ORL_CHECK_RESULT;
+                                      const struct orl_radii_params *params, const struct orl_view *views,
+                                      size_t view_count, struct orl_points *points) ORL_CHECK_RESULT;
 
 // --- the same for a cloud that is read in parts ---
 

@@ -231,11 +231,12 @@ static void drop_flat_points(const struct orl_log *log, struct orl_scene *scene)
 
 static enum orl_result compute_radii(const struct orl_log *log, struct orl_scene *scene)
 {
+    const struct orl_radii_params params = {ORL_RADII_DEFAULTS};
     struct orl_view *views;
     size_t count;
     enum orl_result result = orl_scene_training_views(log, scene, &views, &count);
     ORL_THEN(result, orl_points_drop_in_free_space(log, NULL, views, count, &scene->points));
-    ORL_THEN(result, orl_points_find_radii(log, NULL, views, count, &scene->points));
+    ORL_THEN(result, orl_points_find_radii(log, NULL, &params, views, count, &scene->points));
     free(views);
     return result;
 }

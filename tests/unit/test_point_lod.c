@@ -217,7 +217,7 @@ static void radii_in_parts_are_those_of_the_whole(void **state)
     float *expected = calloc(ground.count, sizeof *expected);
     assert_non_null(expected);
     size_t all = ground.count, far = 0;
-    assert_int_equal(orl_points_find_radii(NULL, NULL, views, 2, &ground), ORL_OK);
+    assert_int_equal(orl_points_find_radii(NULL, NULL, &params.radii, views, 2, &ground), ORL_OK);
     assert_between(ground.count, all * 9 / 10, all - 1); // some are isolated
     for (size_t i = 0; i < ground.count; i++) {
         const uint8_t *c = ground.color[i];
