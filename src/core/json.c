@@ -154,11 +154,9 @@ enum orl_result orl_json_numbers(const struct orl_json_place *place, const json_
         return ORL_OK;
     char wanted[64];
     snprintf(wanted, sizeof wanted, "%zu numbers", count);
-    bool good = json_is_array(array) && json_array_size(array) == count;
-    for (size_t i = 0; good && i < count; i++) {
-        good = is_within(json_array_get(array, i), low, high);
-        values[i] = json_number_value(json_array_get(array, i));
-    }
+    bool good = orl_json_read_numbers(array, count, values);
+    for (size_t i = 0; good && i < count; i++)
+        good = values[i] >= low && values[i] <= high;
     return good ? ORL_OK : refuse_range(place, key, wanted, low, high);
 }
 
