@@ -23,8 +23,8 @@ struct orl_renderer {
     size_t proxy_count;
     struct photos photos;
     struct paint paint;
-    struct room room;
     struct orl_tex *picture;  // of struct frame
+    struct orl_tex *room;     // papers/room.h; NULL: it is not shown
     struct orl_tex *mean;     // reconstructions.c; NULL: a frame is one picture
     size_t *chosen;           // memory of struct frame's list
     float (*selected)[4];
@@ -114,7 +114,7 @@ void orl_renderer_destroy(struct orl_renderer **renderer)
     orl_prefetch_destroy(r->gpu, &r->prefetch);
     orl_photos_finish(r->gpu, &r->photos);
     orl_paint_finish(r->gpu, &r->paint);
-    orl_room_finish(r->gpu, &r->room);
+    orl_tex_destroy(r->gpu, &r->room);
     orl_image_finish(&r->staging);
     orl_tex_destroy(r->gpu, &r->picture);
     orl_tex_destroy(r->gpu, &r->mean);
@@ -139,7 +139,7 @@ static enum orl_result resize(struct orl_renderer *r, const struct frame *frame)
     ORL_TRY(orl_paint_resize(frame));
     ORL_TRY(orl_frame_target(frame, "accumulated colour", true,
                              frame->finishes ? GL_RGBA16F : GL_RGBA32F, &r->picture));
-    ORL_TRY(orl_room_resize(frame, &r->room));
+    ORL_TRY(orl_frame_target(frame, "room", frame->params->fill == ORL_FILL_ROOM, GL_RGBA32F, &r->room));
     return orl_frame_target(frame, "mean of pictures", orl_reconstruction_count(frame) > 1,
                             GL_RGBA32F, &r->mean);
 }
@@ -155,18 +155,17 @@ static enum orl_result draw_picture(struct orl_renderer *r, struct frame *frame,
                                     const struct orl_render_params *params)
 {
     const struct orl_painter *painter = frame->params->paint;
-    const bool room = frame->params->fill == ORL_FILL_ROOM;
     size_t absent = 0;
     ORL_TRY(draw_surface(frame, params));
     if (orl_params_guess(frame->params) && painter != &orl_paint_points)
         orl_fill_depth(frame);
-    if (room)
-        ORL_TRY(orl_room_paint(frame, &r->room, &absent));
+    if (r->room)
+        ORL_TRY(orl_room_paint(frame, r->room, &absent));
     ORL_TRY(painter->paint(frame));
     if (frame->progressive) // those that came with this frame are in the next one's room
         frame->progressive->missing += absent;
-    if (room)
-        orl_room_show(frame, &r->room);
+    if (r->room)
+        orl_room_show(frame, r->room);
     return orl_compose(frame);
 }
 

@@ -4,7 +4,7 @@
 #include "bridge/bridge.h"
 #include "io/picture.h"
 #include "oriel/path.h"
-#include "render/photos/occluders.h"
+#include "render/photos/photos.h"
 #include "render/photos/photo_loader.h"
 #include "walk/internal.h"
 

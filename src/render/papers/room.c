@@ -8,16 +8,6 @@
 #include "render/photos/select.h"
 #include "scene/upright.h"
 
-enum orl_result orl_room_resize(const struct frame *frame, struct room *room)
-{
-    return orl_frame_target(frame, "room", frame->params->fill == ORL_FILL_ROOM, GL_RGBA32F, &room->picture);
-}
-
-void orl_room_finish(struct orl_gpu *gpu, struct room *room)
-{
-    orl_tex_destroy(gpu, &room->picture);
-}
-
 static void place(const struct frame *frame, struct gather_block *block)
 {
     const struct orl_pose *pose = &frame->view->cam_from_world;
@@ -85,7 +75,7 @@ static enum orl_result keep_present(struct frame *frame, bool backgrounds, size_
     return ORL_OK;
 }
 
-enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *absent)
+enum orl_result orl_room_paint(struct frame *frame, struct orl_tex *room, size_t *absent)
 {
     static const struct orl_combine mean = {"mean", .sweeps = 1, .radiance = "gather/radiance/mean.glsl"};
     struct orl_render_params params = *frame->params;
@@ -98,7 +88,7 @@ enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *a
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
     *absent = 0;
-    orl_tex_clear(room->picture);
+    orl_tex_clear(room);
     enum orl_result result = orl_select_all.choose(&walls);
     if (result == ORL_OK && frame->progressive)
         result = keep_present(&walls, backgrounds, absent);
@@ -109,20 +99,20 @@ enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *a
         if (!frame->progressive)
             result = require(&walls, backgrounds, walls.chosen + first, count);
         if (result == ORL_OK)
-            project(&walls, room->picture, backgrounds, first, count);
+            project(&walls, room, backgrounds, first, count);
     }
     if (result == ORL_OK)
-        orl_fill_room(frame, room->picture);
+        orl_fill_room(frame, room);
     orl_pass_end(frame->gpu);
     return result;
 }
 
-void orl_room_show(const struct frame *frame, const struct room *room)
+void orl_room_show(const struct frame *frame, const struct orl_tex *room)
 {
     struct image_block block = {.image_size = {frame->surface.width, frame->surface.height},
                                 .layers = frame->params->paint->layers};
     orl_gpu_pass(frame->gpu, "room", &(struct orl_dispatch){
         .prog = orl_prog_get(frame->gpu, "fill/room.comp", NULL, frame->finishes ? "FINISHED" : NULL),
-        ORL_PARAMS(block), .images = {frame->picture, room->picture, frame->surface.depth},
+        ORL_PARAMS(block), .images = {frame->picture, room, frame->surface.depth},
         .size = {frame->surface.width, frame->surface.height}});
 }

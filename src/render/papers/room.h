@@ -5,21 +5,14 @@
 
 #include "render/frame/frame.h"
 
-struct room {
-    struct orl_tex *picture; // RGBA32F, of a view's size; NULL: it is not shown
-};
-
-// Makes its picture fit the frame, or destroys it if the frame does not show the room.
-enum orl_result orl_room_resize(const struct frame *frame, struct room *room) ORL_CHECK_RESULT;
-void orl_room_finish(struct orl_gpu *gpu, struct room *room);
-// Paints it, in the encoding of blended pixels: the scene's room, or where it has none a
+// Paints it (RGBA32F, of the view's size) in the encoding of blended pixels: the scene's room, or where it has none a
 // shell around the scene. With pictures of the place without the subject these are projected, else
 // the photographs, except where the subject is before the walls. Photographs that see a wall count
 // alike (equation 1). In radiance photographs
 // are projected, each weighted by its confidence: pictures of the empty place have no exposure.
 // Overwrites the frame's chosen photographs. *absent: how many it lacks in a progressive frame, else 0.
-enum orl_result orl_room_paint(struct frame *frame, struct room *room, size_t *absent) ORL_CHECK_RESULT;
+enum orl_result orl_room_paint(struct frame *frame, struct orl_tex *room, size_t *absent) ORL_CHECK_RESULT;
 // Shows it in the frame's picture where nothing was painted before it.
-void orl_room_show(const struct frame *frame, const struct room *room);
+void orl_room_show(const struct frame *frame, const struct orl_tex *room);
 
 #endif

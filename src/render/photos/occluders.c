@@ -1,6 +1,5 @@
-#include "render/photos/occluders.h"
-
 #include "io/picture.h"
+#include "render/photos/photos.h"
 #include "shared/render_blocks.h"
 
 // Depth of all occluders, as a share of the usual distance to what photographs see: before all that

@@ -10,20 +10,34 @@
 // Photographs that are read but not taken may take this much host memory, bytes.
 static const size_t BYTES_MAX = (size_t)256 << 20;
 
-enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene *scene,
-                               size_t index, bool linear, struct orl_image *image)
+// Fails and releases the image if it has not the size of its camera.
+static enum orl_result check_size(const struct orl_log *log, const struct orl_scene *scene, size_t photo,
+                                  const char *path, struct orl_image *image)
 {
-    const struct orl_photo *photo = &scene->photos[index];
-    const struct orl_camera *c = &photo->view.camera;
-    linear = linear && photo->linear;
-    const struct orl_file_path path = orl_scene_file(scene, index, linear ? ORL_FILE_LINEAR : ORL_FILE_PHOTO);
-    ORL_TRY(linear ? orl_picture_read_linear(log, path.text, image) : orl_picture_read(log, path.text, 3, image));
+    const struct orl_camera *c = &scene->photos[photo].view.camera;
     if (image->width == c->width && image->height == c->height)
         return ORL_OK;
-    enum orl_result result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path.text,
+    enum orl_result result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its camera has %dx%d", path,
                                       image->width, image->height, c->width, c->height);
     orl_image_finish(image);
     return result;
+}
+
+enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene, size_t photo,
+                                    struct orl_image *mask)
+{
+    const struct orl_file_path path = orl_scene_file(scene, photo, ORL_FILE_MASK);
+    ORL_TRY(orl_picture_read(log, path.text, 1, mask));
+    return check_size(log, scene, photo, path.text, mask);
+}
+
+enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene *scene,
+                               size_t index, bool linear, struct orl_image *image)
+{
+    linear = linear && scene->photos[index].linear;
+    const struct orl_file_path path = orl_scene_file(scene, index, linear ? ORL_FILE_LINEAR : ORL_FILE_PHOTO);
+    ORL_TRY(linear ? orl_picture_read_linear(log, path.text, image) : orl_picture_read(log, path.text, 3, image));
+    return check_size(log, scene, index, path.text, image);
 }
 
 enum state { UNREAD, BEING_READ, READ, FAILED, TAKEN };

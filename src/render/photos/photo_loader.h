@@ -9,6 +9,9 @@
 // the image. ORL_ERR_FORMAT: it has not the size of its camera.
 enum orl_result orl_photo_read(const struct orl_log *log, const struct orl_scene *scene,
                                size_t index, bool linear, struct orl_image *image) ORL_CHECK_RESULT;
+// Reads a photograph's mask likewise: U8 x1.
+enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene,
+                                    size_t photo, struct orl_image *mask);
 
 struct photo_loader;
 // Starts a thread that reads photographs. It logs errors, so `log` must allow a call from another

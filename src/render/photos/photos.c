@@ -9,7 +9,6 @@
 #include "core/memory.h"
 #include "io/picture.h"
 #include "render/frame/method.h"
-#include "render/photos/occluders.h"
 #include "render/photos/photos.h"
 #include "scene/manifest.h"
 #include "scene/silhouette.h"
@@ -28,10 +27,9 @@ static int divided(int side, int divide)
     return small > 1 ? small : 1;
 }
 
-static struct orl_camera camera_of(const struct orl_photo *photo, int divide)
+static struct orl_camera camera_divided(const struct orl_camera *c, int divide)
 {
-    const struct orl_camera *c = &photo->view.camera;
-    return orl_camera_resized(c, divided(c->width, divide), divided(c->height, divide));
+    return divide > 1 ? orl_camera_resized(c, divided(c->width, divide), divided(c->height, divide)) : *c;
 }
 
 // least: the scene's depth_divide
@@ -41,8 +39,7 @@ static struct orl_camera depth_camera_of(const struct orl_camera *color, int lea
     int divide = least > 1 ? least : 1;
     while (side / divide > DEPTH_SIDE_MAX)
         divide++;
-    return orl_camera_resized(color, divided(color->width, divide),
-                              divided(color->height, divide));
+    return camera_divided(color, divide);
 }
 
 // Size of a slot: the maximum of the usable photographs in each direction.
@@ -61,7 +58,7 @@ static struct slot_size slot_size(const struct photos *photos, int divide)
     for (size_t i = 0; i < photos->scene->photo_count; i++) {
         if (!photos->states[i].usable)
             continue;
-        struct orl_camera color = camera_of(&photos->scene->photos[i], divide);
+        struct orl_camera color = camera_divided(&photos->scene->photos[i].view.camera, divide);
         struct orl_camera depth =
             depth_camera_of(&color, photos->scene->defaults.depth_divide);
         size.width = larger(size.width, color.width);
@@ -216,9 +213,11 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     enum orl_textures textures = ORL_TEXTURES_AUTO;
     ORL_TRY(orl_textures_choose(log, scene, params, &textures));
     struct slot_size size = plan(gpu, budget_bytes, textures, photos);
+    photos->background_of = orl_array(log, (size_t)photos->slot_count, sizeof *photos->background_of);
+    ORL_TRY_MEMORY(photos->background_of);
     for (size_t i = 0; i < scene->photo_count; i++) {
         struct photo_state *state = &photos->states[i];
-        state->color_camera = camera_of(&scene->photos[i], photos->divide);
+        state->color_camera = camera_divided(&scene->photos[i].view.camera, photos->divide);
         state->depth_camera = depth_camera_of(&state->color_camera, scene->defaults.depth_divide);
         state->drawn_camera = depth_camera_of(&state->color_camera, 1);
     }
@@ -420,9 +419,7 @@ static enum orl_result load_color(const struct frame *frame, size_t index)
 
 struct orl_camera orl_photos_depth_camera(const struct photo_state *state, int divide)
 {
-    const struct orl_camera *c = &state->depth_camera;
-    return divide > 1 ? orl_camera_resized(c, divided(c->width, divide), divided(c->height, divide))
-                      : *c;
+    return camera_divided(&state->depth_camera, divide);
 }
 
 static bool has_shadow_maps(const struct frame *frame)
@@ -516,8 +513,7 @@ bool orl_photos_backgrounds(const struct photos *photos)
 
 bool orl_photos_has_background(const struct photos *photos, size_t photo)
 {
-    return photos->background_of &&
-           photos->background_of[photos->states[photo].slot] == photo + 1;
+    return photos->background_of[photos->states[photo].slot] == photo + 1;
 }
 
 enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo)
@@ -531,11 +527,6 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
         return ORL_OK;
     enum orl_result result =
         orl_picture_read(log, orl_scene_file(photos->scene, photo, ORL_FILE_BACKGROUND).text, 3, &whole);
-    if (result == ORL_OK && !photos->background_of)
-        photos->background_of =
-            orl_array(log, (size_t)photos->slot_count, sizeof *photos->background_of);
-    if (result == ORL_OK && !photos->background_of)
-        result = ORL_ERR_MEMORY;
     // Radiance is read without decoding.
     ORL_THEN(result, orl_photos_array(frame->gpu, photos, photos->radiance ? GL_SRGB8_ALPHA8 : GL_RGBA8,
                                       "backgrounds", &photos->background));
@@ -551,20 +542,6 @@ enum orl_result orl_photos_require_background(const struct frame *frame, size_t 
 }
 
 // --- masks ---
-
-enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene,
-                                    size_t photo, struct orl_image *mask)
-{
-    const struct orl_camera *c = &scene->photos[photo].view.camera;
-    const struct orl_file_path path = orl_scene_file(scene, photo, ORL_FILE_MASK);
-    ORL_TRY(orl_picture_read(log, path.text, 1, mask));
-    if (mask->width == c->width && mask->height == c->height)
-        return ORL_OK;
-    enum orl_result result = orl_fail(log, ORL_ERR_FORMAT, "%s: %dx%d pixels, but its photograph has %dx%d",
-                                      path.text, mask->width, mask->height, c->width, c->height);
-    orl_image_finish(mask);
-    return result;
-}
 
 // The alpha of a photograph at its resident size.
 static enum orl_result make_alpha(const struct frame *frame, size_t index,

@@ -36,7 +36,7 @@ struct photos {
     struct orl_tex *mask;       // R8: which pixels are the subject's; NULL: not asked for yet
     struct orl_tex *background; // pictures of the place without the subject; NULL: not asked for
     size_t *background_of;      // per slot: 1 + the photograph whose background it holds; 0: none.
-                                // It outlives a time step. NULL: none was asked for; owned
+                                // It outlives a time step. Owned
     const struct orl_progress *progress; // see struct orl_renderer_params
     size_t uploaded;            // bytes of photographs and masks that went to the device
     bool silhouettes, places, soft_splats; // methods may ask for mask, for background, for soft
@@ -88,9 +88,16 @@ bool orl_photos_backgrounds(const struct photos *photos);
 bool orl_photos_has_background(const struct photos *photos, size_t photo);
 // Brings the picture to the device, into the slot of its photograph, which gets one if it has none.
 enum orl_result orl_photos_require_background(const struct frame *frame, size_t photo);
-// Reads a photograph's mask, of the size of its camera.
-enum orl_result orl_photo_mask_read(const struct orl_log *log, const struct orl_scene *scene,
-                                    size_t photo, struct orl_image *mask);
+
+// --- occluders.c: what a photograph shows before the scene and has no points ---
+
+// Reads the photograph's occluders: U8 x1 of any size, 255 where they are. One without any gets an
+// empty image.
+enum orl_result orl_occluders_read(const struct orl_log *log, const struct orl_scene *scene,
+                                   size_t photo, struct orl_image *mask);
+// Makes the occluders of a photograph the nearest in its depth map, which has just been drawn and
+// has kept[] pixels, so that it paints nothing that lies behind them.
+enum orl_result orl_occluders_put(const struct frame *frame, size_t photo, const int kept[2]);
 
 // --- the steps of the above, for progressive.c ---
 

@@ -48,7 +48,7 @@ struct loading {
     bool depth;
     double start_s;
     int steps;     // done so far
-    size_t *order; // owned
+    struct orl_ranked *order; // owned
     size_t count;
 };
 
@@ -118,7 +118,7 @@ static enum orl_result bring(struct loading *loading)
 {
     const struct photos *photos = loading->frame->photos;
     for (size_t i = 0; i < loading->count; i++) {
-        size_t photo = loading->order[i];
+        size_t photo = loading->order[i].index;
         if (is_present(loading, photo))
             continue;
         if (!fits(loading, photos->costs.color + photos->costs.coarse, true))
@@ -130,7 +130,7 @@ static enum orl_result bring(struct loading *loading)
     }
     bool at_rest = loading->frame->progressive->at_rest;
     for (size_t i = 0; i < loading->count; i++) {
-        size_t photo = loading->order[i];
+        size_t photo = loading->order[i].index;
         if (!is_present(loading, photo) || is_complete(loading, photo))
             continue;
         if (!fits(loading, photos->costs.depth, at_rest))
@@ -151,7 +151,7 @@ static enum orl_result ask(struct loading *loading)
     size_t *absent = orl_array(log, loading->count, sizeof *absent), count = 0;
     enum orl_result result = absent ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < loading->count; i++) {
-        size_t photo = loading->order[i];
+        size_t photo = loading->order[i].index;
         if (photos->states[photo].has_color)
             photos->states[photo].last_use = ++photos->clock;
         else
@@ -170,18 +170,13 @@ static enum orl_result sort(const struct frame *frame, struct loading *loading)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     size_t count = frame->chosen_count, most = (size_t)frame->photos->slot_count;
-    struct orl_ranked *all = orl_array(log, count, sizeof *all);
     loading->order = orl_array(log, count, sizeof *loading->order);
+    ORL_TRY_MEMORY(loading->order);
+    for (size_t i = 0; i < count; i++)
+        loading->order[i] = (struct orl_ranked){-use_of(frame, frame->chosen[i]), frame->chosen[i]};
+    qsort(loading->order, count, sizeof *loading->order, orl_order_ranked);
     loading->count = count < most ? count : most;
-    enum orl_result result = all && loading->order ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        all[i] = (struct orl_ranked){-use_of(frame, frame->chosen[i]), frame->chosen[i]};
-    if (result == ORL_OK)
-        qsort(all, count, sizeof *all, orl_order_ranked);
-    for (size_t i = 0; result == ORL_OK && i < loading->count; i++)
-        loading->order[i] = all[i].index;
-    free(all);
-    return result;
+    return ORL_OK;
 }
 
 static void remove_absent(struct frame *frame, const struct loading *loading)
@@ -189,8 +184,8 @@ static void remove_absent(struct frame *frame, const struct loading *loading)
     size_t kept = 0;
     frame->photos->were_absent = false;
     for (size_t i = 0; i < loading->count; i++)
-        frame->photos->were_absent |= frame->photos->states[loading->order[i]].usable &&
-                                      !is_present(loading, loading->order[i]);
+        frame->photos->were_absent |= frame->photos->states[loading->order[i].index].usable &&
+                                      !is_present(loading, loading->order[i].index);
     for (size_t i = 0; i < frame->chosen_count; i++) {
         if (!is_present(loading, frame->chosen[i]))
             continue;
@@ -213,8 +208,8 @@ enum orl_result orl_progressive_admit(struct frame *frame, bool depth)
     ORL_THEN(result, ask(&loading));
     ORL_THEN(result, bring(&loading));
     for (size_t i = 0; result == ORL_OK && i < loading.count; i++)
-        frame->progressive->missing += frame->photos->states[loading.order[i]].usable &&
-                                       !is_complete(&loading, loading.order[i]);
+        frame->progressive->missing += frame->photos->states[loading.order[i].index].usable &&
+                                       !is_complete(&loading, loading.order[i].index);
     if (result == ORL_OK)
         remove_absent(frame, &loading);
     frame->progressive->spent = orl_time_s() - loading.start_s;

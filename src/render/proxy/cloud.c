@@ -5,7 +5,6 @@
 
 #include "core/memory.h"
 #include "render/proxy/cloud.h"
-#include "render/proxy/cloud_pages.h"
 #include "scene/point_blocks.h"
 
 enum {

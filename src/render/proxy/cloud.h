@@ -3,6 +3,7 @@
 #define ORL_RENDER_CLOUD_H
 
 #include "oriel/render.h"
+#include "scene/point_lod.h"
 #include "shared/render_blocks.h"
 
 // A part of the points, small enough that no buffer exceeds the device's limits. It consists of
@@ -19,7 +20,7 @@ struct cloud {
     struct point_chunk *chunks;
     size_t chunk_count;
     const struct orl_points *points; // the scene's
-    struct cloud_pages *pages; // what the one chunk holds (cloud_pages.h); NULL: all points
+    struct cloud_pages *pages; // what the one chunk holds, of a cloud with levels of detail; NULL: all points
     float near;                // of struct orl_scene
 };
 
@@ -39,5 +40,17 @@ size_t orl_cloud_chunk_points(const struct orl_gpu *gpu);
 // Lists the blocks to draw of each chunk. The counts and the first index in `block` are
 // overwritten.
 void orl_cloud_cull(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block);
+
+// --- cloud_pages.c: the part of a cloud with levels of detail that a view needs ---
+
+// Which pages are in the cloud's one chunk. `lod` must outlive it. max_bytes: of device memory;
+// 0: as many pages as one chunk may have.
+enum orl_result orl_cloud_pages_init(struct orl_gpu *gpu, const struct orl_lod *lod,
+                                     size_t max_bytes, struct cloud *cloud) ORL_CHECK_RESULT;
+void orl_cloud_pages_finish(struct cloud_pages **pages);
+// Chooses the coarsest pages that have enough points in each pixel of the view, or coarser ones where there
+// is no room, and brings those to the device that are not there. No point is drawn of any other page.
+enum orl_result orl_cloud_pages_choose(const struct cloud *cloud,
+                                       const struct orl_view *view) ORL_CHECK_RESULT;
 
 #endif

@@ -3,7 +3,6 @@
 
 #include "core/memory.h"
 #include "render/frame/frame.h"
-#include "render/proxy/cloud_pages.h"
 
 static enum orl_result init(struct orl_gpu *gpu, const struct orl_scene *scene, size_t max_bytes, void *state)
 {
