@@ -38,7 +38,9 @@ static enum orl_result make(const struct frame *frame, struct voxel_state *state
         if (hull)
             ORL_TRY(orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh));
     }
-    orl_voxels_warn(log, voxels, &state->said_endless);
+    if (voxels->cube.endless && !state->said_endless)
+        orl_hull_warn_endless(log);
+    state->said_endless = state->said_endless || voxels->cube.endless;
     if (!hull && !voxels->count)
         return orl_fail(log, ORL_ERR_DATA, "%s: no voxel is left", frame->scene->dir);
     return ORL_OK;

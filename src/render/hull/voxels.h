@@ -31,8 +31,6 @@ void orl_voxels_finish(struct voxels *voxels);
 bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo);
 // Side of the cube of this frame.
 int orl_voxels_side(const struct frame *frame);
-// Says once that the hull is cut off where it is; *said: it has been said.
-void orl_voxels_warn(const struct orl_log *log, const struct voxels *voxels, bool *said);
 
 // --- the steps of carving, for prefetch.c ---
 
