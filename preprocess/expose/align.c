@@ -33,7 +33,7 @@ static const double LIMIT_EV = 2, COLOUR_LIMIT_EV = 1;
 struct problem {
     const struct orl_log *log;
     const struct orl_samples *samples;
-    struct orl_align_photo *photos;
+    struct orl_exposed *photos;
     size_t photo_count, lens_count;
     struct orl_robust_fit fit; // unknowns: log gain of each photograph, LENS_TERMS of each lens
     int channel;
@@ -200,7 +200,7 @@ static void set_values(struct problem *p)
 {
     for (size_t i = 0; i < p->samples->count; i++) {
         const struct orl_observation *item = &p->samples->items[i];
-        const struct orl_align_photo *photo = &p->photos[item->photo];
+        const struct orl_exposed *photo = &p->photos[item->photo];
         double noise = item->clipped ? INFINITY : 0;
         p->value[i][3] = 0;
         p->fit.sigma[i] = INFINITY;
@@ -237,7 +237,7 @@ static void set_prior(struct problem *p)
 {
     double centre = mean_ev(p);
     for (size_t i = 0; i < p->photo_count; i++) {
-        const struct orl_align_photo *photo = &p->photos[i];
+        const struct orl_exposed *photo = &p->photos[i];
         double sigma = M_LN2 * (photo->known ? EXPOSURE_SIGMA_EV : UNKNOWN_SIGMA_EV);
         p->prior[i] = photo->known ? -M_LN2 * (photo->ev - centre) : 0;
         p->precision[i] = 1 / (sigma * sigma);
@@ -269,7 +269,7 @@ static void count_samples(struct problem *p)
         p->photos[p->samples->items[i].photo].samples += isfinite(p->fit.sigma[i]);
 }
 
-static double mean_gain_ev(const struct orl_align_photo *photo)
+static double mean_gain_ev(const struct orl_exposed *photo)
 {
     double mean = 0;
     for (int c = 0; c < 3; c++)
@@ -277,7 +277,7 @@ static double mean_gain_ev(const struct orl_align_photo *photo)
     return mean;
 }
 
-static bool is_plausible(const struct orl_align_photo *photo)
+static bool is_plausible(const struct orl_exposed *photo)
 {
     double mean = mean_gain_ev(photo);
     for (int c = 0; c < 3; c++)
@@ -293,7 +293,7 @@ static bool refuse(struct problem *p)
 {
     bool again = false;
     for (size_t i = 0; i < p->photo_count; i++) {
-        struct orl_align_photo *photo = &p->photos[i];
+        struct orl_exposed *photo = &p->photos[i];
         if (photo->refused || photo->samples < SAMPLES_MIN)
             continue;
         photo->off_ev = photo->known ? fabs(mean_gain_ev(photo) + photo->ev) : 0;
@@ -306,7 +306,7 @@ static bool refuse(struct problem *p)
 static void fall_back(struct problem *p)
 {
     for (size_t i = 0; i < p->photo_count; i++) {
-        struct orl_align_photo *photo = &p->photos[i];
+        struct orl_exposed *photo = &p->photos[i];
         for (int c = 0; c < 3; c++)
             if (photo->refused || photo->samples < SAMPLES_MIN)
                 photo->gain[c] = photo->known ? (float)exp2(-photo->ev) : 1;
@@ -342,7 +342,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
     return result;
 }
 
-static size_t lens_count(const struct orl_align_photo *photos, size_t count)
+static size_t lens_count(const struct orl_exposed *photos, size_t count)
 {
     int lenses = 0;
     for (size_t i = 0; i < count; i++)
@@ -351,7 +351,7 @@ static size_t lens_count(const struct orl_align_photo *photos, size_t count)
 }
 
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
-                          struct orl_align_photo *photos, size_t photo_count,
+                          struct orl_exposed *photos, size_t photo_count,
                           struct orl_alignment *alignment)
 {
     memset(alignment, 0, sizeof *alignment);
@@ -388,7 +388,7 @@ enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *s
     return result;
 }
 
-bool orl_align_contradicts(const struct orl_align_photo *photos, size_t count)
+bool orl_align_contradicts(const struct orl_exposed *photos, size_t count)
 {
     size_t known = 0, unlike = 0;
     for (size_t i = 0; i < count; i++) {

@@ -5,18 +5,6 @@
 
 #include "preprocess/expose/samples.h"
 
-struct orl_align_photo {
-    bool known; // true when ev is set
-    double ev;  // log2 of exposure, relative to the scene's reference
-    int lens;   // index from 0; photographs with one lens share vignetting
-    const float (*linear)[256]; // response of its camera, three channels; NULL: sRGB
-    // Results:
-    float gain[3];
-    double off_ev;  // of its gain from its exposure, also where the gain was refused; 0: unknown
-    size_t samples; // observations that its gain was fitted to
-    bool refused;   // its gain was not plausible, so that of its exposure is used
-};
-
 struct orl_alignment {
     float (*vignette)[3];  // owned; per lens, as in struct orl_photo
     size_t lens_count;
@@ -28,10 +16,10 @@ struct orl_alignment {
 // geometric mean is that of 2^-ev over photographs with known exposures, or 1 when no exposure is
 // known.
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
-                          struct orl_align_photo *photos, size_t photo_count,
+                          struct orl_exposed *photos, size_t photo_count,
                           struct orl_alignment *alignment) ORL_CHECK_RESULT;
 // True if a quarter or more of the photographs whose exposure is known look unlike it.
-bool orl_align_contradicts(const struct orl_align_photo *photos, size_t count);
+bool orl_align_contradicts(const struct orl_exposed *photos, size_t count);
 void orl_alignment_finish(struct orl_alignment *alignment);
 
 #endif

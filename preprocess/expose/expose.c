@@ -32,22 +32,22 @@ static int nearest_series(const double *sorted, size_t count, double step_ev, do
     return best;
 }
 
-enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
+enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposed *photos,
                                     size_t count, double step_ev, bool stays, int *series_count)
 {
     size_t known = 0;
     double *sorted = orl_array(log, count, sizeof *sorted);
     ORL_TRY_MEMORY(sorted);
     for (size_t i = 0; i < count; i++)
-        if (exposures[i].known && !exposures[i].test)
-            sorted[known++] = exposures[i].ev;
+        if (photos[i].known && !photos[i].test)
+            sorted[known++] = photos[i].ev;
     qsort(sorted, known, sizeof *sorted, orl_order_doubles);
     double median = known ? sorted[(known - 1) / 2] : 0; // the lower one: a photograph has it
     *series_count = 1;
     for (size_t i = 1; i < known; i++)
         *series_count += sorted[i] - sorted[i - 1] >= step_ev;
     for (size_t i = 0; i < count; i++) {
-        struct orl_exposure *e = &exposures[i];
+        struct orl_exposed *e = &photos[i];
         // Without a median, no exposure can be relative to it, so all count as unknown.
         e->known = e->known && known;
         e->series = nearest_series(sorted, known, step_ev, e->known ? e->ev : median);
@@ -63,11 +63,8 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposu
 struct photo {
     const struct orl_source *source;
     const struct orl_colmap_image *image;
-    struct orl_view view;
     enum orl_exposure_source from;
     int response; // index into the responses, -1: sRGB
-    int camera;   // photographs of one camera may share a response, -1: none
-    float gain[3], vignette[3];
     double metering[2]; // orl_photo.metering and metered_ev
 };
 
@@ -77,7 +74,7 @@ struct exposing {
     json_t *record;
     const struct orl_colmap_model *model; // the job's
     struct photo *photos;
-    struct orl_exposure *exposures;
+    struct orl_exposed *exposed; // of each
     size_t count, train;
     int camera_count; // of those that photographs may share a response of
     struct orl_samples samples; // of training photographs
@@ -98,15 +95,16 @@ static bool same_camera(const struct orl_source *a, const struct orl_source *b)
 static void set_cameras(struct exposing *e)
 {
     for (size_t i = 0; i < e->count; i++) {
-        struct photo *photo = &e->photos[i];
-        photo->response = photo->camera = -1;
-        if (photo->source->deep)
+        const struct orl_source *source = e->photos[i].source;
+        int *camera = &e->exposed[i].camera;
+        *camera = -1;
+        if (source->deep)
             continue;
-        for (size_t k = 0; k < i && photo->camera < 0; k++)
-            if (e->photos[k].camera >= 0 && same_camera(photo->source, e->photos[k].source))
-                photo->camera = e->photos[k].camera;
-        if (photo->camera < 0)
-            photo->camera = e->camera_count++;
+        for (size_t k = 0; k < i && *camera < 0; k++)
+            if (e->exposed[k].camera >= 0 && same_camera(source, e->photos[k].source))
+                *camera = e->exposed[k].camera;
+        if (*camera < 0)
+            *camera = e->camera_count++;
     }
 }
 
@@ -115,18 +113,20 @@ static enum orl_result find_photos(struct exposing *e)
     struct orl_job *job = e->job;
     ORL_TRY(orl_job_sparse(job, &e->model));
     e->photos = orl_array(job->log, e->model->image_count, sizeof *e->photos);
-    e->exposures = orl_array(job->log, e->model->image_count, sizeof *e->exposures);
-    ORL_TRY_MEMORY(e->photos && e->exposures);
+    e->exposed = orl_array(job->log, e->model->image_count, sizeof *e->exposed);
+    ORL_TRY_MEMORY(e->photos && e->exposed);
     for (int test = 0; test < 2; test++) {
         for (size_t i = 0; i < e->model->image_count; i++) {
             const struct orl_colmap_image *image = &e->model->images[i];
             const struct orl_source *source = orl_job_find(job, image->name);
             if (source->test != (test == 1))
                 continue;
-            e->exposures[e->count].test = source->test;
-            e->photos[e->count++] = (struct photo){
-                .source = source, .image = image, .gain = {1, 1, 1},
-                .view = orl_colmap_image_view(e->model, image)};
+            // Photographs of one camera of the model share their lens.
+            const struct orl_colmap_camera *lens = orl_colmap_camera_by_id(e->model, image->camera_id);
+            e->exposed[e->count] = (struct orl_exposed){
+                .name = source->name, .view = orl_colmap_image_view(e->model, image), .test = source->test,
+                .lens = (int)(lens - e->model->cameras), .gain = {1, 1, 1}};
+            e->photos[e->count++] = (struct photo){.source = source, .image = image};
             e->train += test == 0;
         }
     }
@@ -140,10 +140,10 @@ static enum orl_result set_exposures(struct exposing *e)
 {
     for (size_t i = 0; i < e->count; i++) {
         struct photo *photo = &e->photos[i];
-        photo->from = orl_source_exposure(e->job, photo->source, &e->exposures[i].ev);
-        e->exposures[i].known = photo->from != ORL_EXPOSURE_UNKNOWN;
+        photo->from = orl_source_exposure(e->job, photo->source, &e->exposed[i].ev);
+        e->exposed[i].known = photo->from != ORL_EXPOSURE_UNKNOWN;
     }
-    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV, false,
+    return orl_exposures_group(e->job->log, e->exposed, e->count, ORL_EXPOSURE_STEP_EV, false,
                                &e->series_count);
 }
 
@@ -153,10 +153,10 @@ static enum orl_result estimate_exposures(struct exposing *e)
 {
     size_t known = 0, estimated = 0;
     for (size_t i = 0; i < e->count; i++)
-        known += e->exposures[i].known;
+        known += e->exposed[i].known;
     for (size_t i = 0; i < e->train; i++) {
-        struct orl_exposure *exposure = &e->exposures[i];
-        const float *gain = e->photos[i].gain;
+        struct orl_exposed *exposure = &e->exposed[i];
+        const float *gain = exposure->gain;
         if (exposure->known)
             continue;
         exposure->known = true;
@@ -170,7 +170,7 @@ static enum orl_result estimate_exposures(struct exposing *e)
              "expose: exposures of %zu photographs are not told; estimated from the scene, "
              "relative to each other", estimated);
     // The estimated exposures keep the scale of the gains.
-    return orl_exposures_group(e->job->log, e->exposures, e->count,
+    return orl_exposures_group(e->job->log, e->exposed, e->count,
                                known ? ORL_EXPOSURE_STEP_EV : ORL_ESTIMATED_STEP_EV, true,
                                &e->series_count);
 }
@@ -181,14 +181,9 @@ static enum orl_result take_samples(struct exposing *e)
 {
     struct orl_job *job = e->job;
     struct orl_points points = {0};
-    struct orl_sample_photo *photos = orl_array(job->log, e->train, sizeof *photos);
-    ORL_TRY_MEMORY(photos);
-    for (size_t i = 0; i < e->train; i++)
-        photos[i] = (struct orl_sample_photo){e->photos[i].source->name, e->photos[i].view};
     enum orl_result result = orl_lod_read_cloud(job->log, job->dir, ORL_LOD_SAMPLE, &points);
-    ORL_THEN(result, orl_samples_take(job->log, job->progress, ORL_PATH(job->dir, "images"), photos, e->train,
+    ORL_THEN(result, orl_samples_take(job->log, job->progress, ORL_PATH(job->dir, "images"), e->exposed, e->train,
                                       &points, &e->samples));
-    free(photos);
     orl_points_finish(&points);
     return result;
 }
@@ -230,41 +225,32 @@ static void say_response(const struct exposing *e, const struct orl_source *sour
 
 static enum orl_result fit_camera(struct exposing *e, int camera)
 {
-    struct orl_response_photo *photos = orl_array(e->job->log, e->train, sizeof *photos);
-    const struct orl_source *source = NULL;
+    size_t first = 0;
     struct orl_response_fit fit;
-    ORL_TRY_MEMORY(photos);
-    for (size_t i = 0; i < e->train; i++) {
-        photos[i] = (struct orl_response_photo){
-            .use = e->photos[i].camera == camera && e->exposures[i].known,
-            .ev = e->exposures[i].ev};
-        memcpy(photos[i].vignette, e->photos[i].vignette, sizeof photos[i].vignette);
-        if (e->photos[i].camera == camera)
-            source = e->photos[i].source;
-    }
-    enum orl_result result = ORL_OK;
-    if (!source)
-        goto end; // all photographs of this camera are held out
     struct orl_response *response = &e->responses[e->response_count];
-    result = orl_response_fit(e->job->log, e->job->params->response, &e->samples, photos, e->train, response, &fit);
-    if (result != ORL_OK)
-        goto end;
+    while (first < e->train && e->exposed[first].camera != camera)
+        first++;
+    if (first == e->train)
+        return ORL_OK; // all photographs of this camera are held out
+    const struct orl_source *source = e->photos[first].source;
+    ORL_TRY(orl_response_fit(e->job->log, e->job->params->response, &e->samples, e->exposed, e->train, camera,
+                             response, &fit));
     if (e->last)
         say_response(e, source, &fit);
     if (fit.outcome != ORL_RESPONSE_FOUND)
-        goto end;
+        return ORL_OK;
     for (size_t i = 0; i < e->count; i++)
-        if (e->photos[i].camera == camera)
+        if (e->exposed[i].camera == camera) {
             e->photos[i].response = (int)e->response_count;
+            e->exposed[i].linear = (const float (*)[256])response->linear;
+        }
     e->response_count++;
     json_array_append_new(e->response_list,
                           json_pack("{s:s, s:i, s:f, s:f, s:o}", "camera", camera_name(source),
                                     "points", (int)fit.points, "spread_ev", fit.spread_ev,
                                     "spread_srgb_ev", fit.spread_srgb_ev, "linear",
                                     curves_record(response)));
-end:
-    free(photos);
-    return result;
+    return ORL_OK;
 }
 
 static enum orl_result fit_responses(struct exposing *e)
@@ -279,14 +265,7 @@ static enum orl_result fit_responses(struct exposing *e)
     return ORL_OK;
 }
 
-// Photographs of one camera of the model share their lens.
-static int lens_of(const struct exposing *e, size_t photo)
-{
-    return (int)(orl_colmap_camera_by_id(e->model, e->photos[photo].image->camera_id) - e->model->cameras);
-}
-
-static void say_alignment(const struct exposing *e, const struct orl_align_photo *photos,
-                          const struct orl_alignment *alignment)
+static void say_alignment(const struct exposing *e, const struct orl_alignment *alignment)
 {
     const struct orl_log *log = e->job->log;
     orl_logf(log, ORL_LOG_INFO,
@@ -294,35 +273,24 @@ static void say_alignment(const struct exposing *e, const struct orl_align_photo
              "%.2f EV, and do within %.2f", e->samples.point_count, alignment->spread_before_ev,
              alignment->spread_after_ev);
     for (size_t i = 0; i < e->train; i++)
-        if (photos[i].refused)
+        if (e->exposed[i].refused)
             orl_logf(log, ORL_LOG_WARNING,
                      "%s: too unlike the others to be aligned; its exposure is taken as it is",
-                     e->photos[i].source->name);
+                     e->exposed[i].name);
 }
 
 static enum orl_result align(struct exposing *e)
 {
     struct orl_alignment alignment = {0};
-    struct orl_align_photo *photos = orl_array(e->job->log, e->train, sizeof *photos);
-    enum orl_result result = photos ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
-        int response = e->photos[i].response;
-        photos[i] = (struct orl_align_photo){
-            .known = e->exposures[i].known, .ev = e->exposures[i].ev, .lens = lens_of(e, i),
-            .linear = response < 0 ? NULL
-                                   : (const float (*)[256])e->responses[response].linear};
+    ORL_TRY(orl_align(e->job->log, &e->samples, e->exposed, e->train, &alignment));
+    e->contradicted = orl_align_contradicts(e->exposed, e->train);
+    for (size_t i = 0; i < e->count; i++) {
+        struct orl_exposed *photo = &e->exposed[i];
+        if ((size_t)photo->lens < alignment.lens_count)
+            memcpy(photo->vignette, alignment.vignette[photo->lens], sizeof photo->vignette);
     }
-    ORL_THEN(result, orl_align(e->job->log, &e->samples, photos, e->train, &alignment));
-    e->contradicted = result == ORL_OK && orl_align_contradicts(photos, e->train);
-    for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
-        size_t lens = (size_t)lens_of(e, i);
-        if (i < e->train)
-            memcpy(e->photos[i].gain, photos[i].gain, sizeof photos[i].gain);
-        if (lens < alignment.lens_count)
-            memcpy(e->photos[i].vignette, alignment.vignette[lens], sizeof e->photos[i].vignette);
-    }
-    if (result == ORL_OK && e->last) {
-        say_alignment(e, photos, &alignment);
+    if (e->last) {
+        say_alignment(e, &alignment);
         json_object_set_new(e->record, "co_visible_points",
                             json_integer((json_int_t)e->samples.point_count));
         json_object_set_new(e->record, "spread_before_ev",
@@ -330,8 +298,7 @@ static enum orl_result align(struct exposing *e)
         json_object_set_new(e->record, "spread_after_ev", json_real(alignment.spread_after_ev));
     }
     orl_alignment_finish(&alignment);
-    free(photos);
-    return result;
+    return ORL_OK;
 }
 
 // EXIF of copies and of edited photographs may be anything, the same time everywhere for example.
@@ -349,10 +316,10 @@ static enum orl_result heed_pictures(struct exposing *e, bool *again)
              *again ? "EXIF tells" : "the list of --exposures tells",
              *again ? "; they are estimated from the pictures. --exposures FILE takes a list" : "");
     for (size_t i = 0; *again && i < e->count; i++) {
-        e->exposures[i].known = false;
+        e->exposed[i].known = false;
         e->photos[i].from = ORL_EXPOSURE_UNKNOWN;
     }
-    return orl_exposures_group(e->job->log, e->exposures, e->count, ORL_EXPOSURE_STEP_EV, false,
+    return orl_exposures_group(e->job->log, e->exposed, e->count, ORL_EXPOSURE_STEP_EV, false,
                                &e->series_count);
 }
 
@@ -361,8 +328,10 @@ static enum orl_result fit_all(struct exposing *e)
 {
     for (int round = 0; round < 2; round++) {
         e->last = round == 1;
-        for (size_t i = 0; i < e->count; i++)
+        for (size_t i = 0; i < e->count; i++) {
             e->photos[i].response = -1;
+            e->exposed[i].linear = NULL;
+        }
         ORL_TRY(fit_responses(e));
         ORL_TRY(align(e));
         bool again = false;
@@ -397,11 +366,11 @@ static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, 
 }
 
 // Light of a training photograph with this gain, log2.
-static enum orl_result meter_photo(const struct exposing *e, const struct photo *photo,
-                                   const float gain[3], double *light)
+static enum orl_result meter_photo(const struct exposing *e, size_t i, const float gain[3], double *light)
 {
-    return orl_photo_metered(e->job->log, ORL_PATH(e->job->dir, "images/%s", photo->source->name),
-                             &photo->view.camera, gain, photo->vignette, light);
+    const struct orl_exposed *photo = &e->exposed[i];
+    return orl_photo_metered(e->job->log, ORL_PATH(e->job->dir, "images/%s", photo->name), &photo->view.camera, gain,
+                             photo->vignette, light);
 }
 
 // Photographs whose exposures the camera chose by itself are one series. Merged as a bracket is, they give no
@@ -416,14 +385,14 @@ static enum orl_result join_metered(struct exposing *e)
     double *light = orl_array(log, e->train, sizeof *light);
     enum orl_result result = ev && light ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
-        ev[i] = e->exposures[i].ev;
-        result = meter_photo(e, &e->photos[i], as_it_is, &light[i]);
+        ev[i] = e->exposed[i].ev;
+        result = meter_photo(e, i, as_it_is, &light[i]);
     }
     if (result == ORL_OK && orl_exposures_are_metered(ev, light, e->train)) {
         orl_logf(log, ORL_LOG_INFO, "expose: the camera chose the exposures by itself: they are no bracket");
         e->series_count = 1;
         for (size_t i = 0; i < e->count; i++)
-            e->exposures[i].series = 0;
+            e->exposed[i].series = 0;
     }
     free(ev);
     free(light);
@@ -443,19 +412,20 @@ static enum orl_result guess_held_out(struct exposing *e)
                                                     : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
         bool told = e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
-        views[i].known = told && e->exposures[i].known;
-        views[i].ev = e->exposures[i].ev;
-        memcpy(views[i].gain, e->photos[i].gain, sizeof views[i].gain);
-        orl_pose_centre(&e->photos[i].view.cam_from_world, views[i].eye);
+        const struct orl_exposed *photo = &e->exposed[i];
+        views[i].known = told && photo->known;
+        views[i].ev = photo->ev;
+        memcpy(views[i].gain, photo->gain, sizeof views[i].gain);
+        orl_pose_centre(&photo->view.cam_from_world, views[i].eye);
         if (i < e->train)
-            result = meter_photo(e, &e->photos[i], e->photos[i].gain, &views[i].light);
+            result = meter_photo(e, i, photo->gain, &views[i].light);
     }
     if (result == ORL_OK) {
         static const char *const guesses[] = {ORL_GAIN_GUESSES(ORL_ENUM_NAME)};
         enum orl_gain_guess guess = orl_gains_guess(views, e->train, views + e->train,
                                                     e->count - e->train, shared, own, metering);
         for (size_t i = e->train; i < e->count; i++) {
-            memcpy(e->photos[i].gain, views[i].gain, sizeof views[i].gain);
+            memcpy(e->exposed[i].gain, views[i].gain, sizeof views[i].gain);
             memcpy(e->photos[i].metering, metering, sizeof metering);
         }
         json_object_set_new(e->record, "held_out_gain", json_string(guesses[guess]));
@@ -468,20 +438,20 @@ static enum orl_result guess_held_out(struct exposing *e)
 
 // --- the record ---
 
-static json_t *photo_record(const struct photo *p, const struct orl_exposure *e)
+static json_t *photo_record(const struct photo *p, const struct orl_exposed *e)
 {
     static const char *const from[] = {[ORL_EXPOSURE_EXIF] = "exif", [ORL_EXPOSURE_LIST] = "list",
                                        [ORL_EXPOSURE_SCENE] = "scene"};
     json_t *entry = json_pack(
-        "{s:s, s:s, s:o, s:i, s:[f,f,f]}", "name", p->source->name, "split",
+        "{s:s, s:s, s:o, s:i, s:[f,f,f]}", "name", e->name, "split",
         e->test ? "test" : "train", "exposure_ev", e->known ? json_real(e->ev) : json_null(),
-        "series", e->series, "gain", (double)p->gain[0], (double)p->gain[1], (double)p->gain[2]);
+        "series", e->series, "gain", (double)e->gain[0], (double)e->gain[1], (double)e->gain[2]);
     if (e->known && from[p->from])
         json_object_set_new(entry, "exposure_from", json_string(from[p->from]));
-    if (p->vignette[0] != 0 || p->vignette[1] != 0 || p->vignette[2] != 0)
+    if (e->vignette[0] != 0 || e->vignette[1] != 0 || e->vignette[2] != 0)
         json_object_set_new(entry, "vignette",
-                            json_pack("[f,f,f]", (double)p->vignette[0], (double)p->vignette[1],
-                                      (double)p->vignette[2]));
+                            json_pack("[f,f,f]", (double)e->vignette[0], (double)e->vignette[1],
+                                      (double)e->vignette[2]));
     if (p->metering[0] > 0)
         json_object_set_new(entry, "metering",
                             json_pack("[f,f]", p->metering[0], p->metering[1]));
@@ -495,7 +465,7 @@ static void write_record(const struct exposing *e)
     json_t *photos = json_array();
     size_t told = 0;
     for (size_t i = 0; i < e->count; i++) {
-        json_array_append_new(photos, photo_record(&e->photos[i], &e->exposures[i]));
+        json_array_append_new(photos, photo_record(&e->photos[i], &e->exposed[i]));
         told += e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
     }
     json_object_set_new(e->record, "photographs", photos);
@@ -522,7 +492,7 @@ enum orl_result orl_stage_expose(struct orl_job *job, json_t *record)
     orl_samples_finish(&e.samples);
     json_decref(e.response_list);
     free(e.responses);
-    free(e.exposures);
+    free(e.exposed);
     free(e.photos);
     return result;
 }

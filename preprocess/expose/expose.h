@@ -2,13 +2,25 @@
 #ifndef ORL_PREPROCESS_EXPOSE_H
 #define ORL_PREPROCESS_EXPOSE_H
 
+#include "oriel/camera.h"
 #include "oriel/log.h"
 
-struct orl_exposure {
-    bool known;  // in: true when ev is set
-    bool test;   // in: held out; excluded from the median and the series
-    double ev;   // in: log2 of exposure; out, unless it is to stay: relative to the median, 0 if unknown
-    int series;  // out: from 0, darkest first
+// A photograph, as far as its exposure goes. Its response, gain and vignetting are those of struct orl_photo.
+struct orl_exposed {
+    const char *name; // of the undistorted file in the folder of photographs
+    struct orl_view view;
+    bool known; // true when ev is set
+    bool test;  // held out
+    double ev;  // log2 of exposure
+    int series; // by orl_exposures_group, from 0, darkest first
+    int camera; // index from 0; photographs of one camera share a response; -1: sRGB's
+    int lens;   // index from 0; photographs with one lens share vignetting
+    const float (*linear)[256]; // response, three channels; NULL: sRGB
+    float gain[3], vignette[3];
+    // By orl_align:
+    double off_ev;  // of the gain from the exposure, also where the gain was refused; 0: unknown
+    size_t samples; // observations that the gain was fitted to
+    bool refused;   // the gain was not plausible, so that of the exposure is used
 };
 
 // Sorted exposures whose steps are smaller than this form one series: half of the third of a stop
@@ -18,8 +30,9 @@ struct orl_exposure {
 #define ORL_ESTIMATED_STEP_EV 0.5
 
 // The median and the series come from known exposures of photographs that are not held out. Other
-// photographs join the nearest series. Returns the number of series.
-enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposure *exposures,
+// photographs join the nearest series. Exposures become relative to the median (unknown ones 0) unless they are
+// to stay.
+enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposed *photos,
                                     size_t count, double step_ev, bool stays,
                                     int *series_count) ORL_CHECK_RESULT;
 

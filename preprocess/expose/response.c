@@ -40,7 +40,8 @@ static const double RISE_MIN = 1e-4;
 
 struct problem {
     const struct orl_samples *samples;
-    const struct orl_response_photo *photos;
+    const struct orl_exposed *photos;
+    int camera;
     struct orl_robust_fit fit; // unknowns: the terms, then an offset of each photograph's log exposure
     float *light;    // log of vignetting times exposure
     double floor;    // 8-bit value; darker values have no weight
@@ -50,6 +51,12 @@ struct problem {
     double *offset;  // of each photograph's log exposure
     double *share;   // of each photograph in the weight of all samples, times photo_count
 };
+
+// Is it of the camera, with a known exposure?
+static bool counts(const struct problem *p, size_t photo)
+{
+    return p->photos[photo].camera == p->camera && p->photos[photo].known;
+}
 
 static double vignetting(const float v[3], double r2)
 {
@@ -77,7 +84,7 @@ static double curve_at(const struct problem *p, double value)
 static bool is_usable(const struct problem *p, const struct orl_observation *item)
 {
     double value = (double)item->value[p->channel];
-    return p->photos[item->photo].use && !(item->clipped & 1u << p->channel) && value >= 2 &&
+    return counts(p, item->photo) && !(item->clipped & 1u << p->channel) && value >= 2 &&
            value <= VALUE_MAX;
 }
 
@@ -148,22 +155,21 @@ static size_t choose(struct problem *p)
         double least = INFINITY, most = -INFINITY;
         for (size_t i = begin; i < end; i++) {
             const struct orl_observation *item = &p->samples->items[i];
-            const struct orl_response_photo *photo = &p->photos[item->photo];
-            if (!photo->use)
+            if (!counts(p, item->photo))
                 continue;
-            least = fmin(least, photo->ev);
-            most = fmax(most, photo->ev);
+            least = fmin(least, p->photos[item->photo].ev);
+            most = fmax(most, p->photos[item->photo].ev);
         }
-        bool counts = most - least >= PAIR_MIN_EV;
-        points += counts;
+        bool differ = most - least >= PAIR_MIN_EV;
+        points += differ;
         for (size_t i = begin; i < end; i++) {
             const struct orl_observation *item = &p->samples->items[i];
-            const struct orl_response_photo *photo = &p->photos[item->photo];
+            const struct orl_exposed *photo = &p->photos[item->photo];
             double value = (double)item->value[p->channel] - p->floor, slope;
             p->fit.sigma[i] = INFINITY;
             p->light[i] = (float)(M_LN2 * photo->ev +
                                   log(vignetting(photo->vignette, (double)item->r2)));
-            if (!counts || !is_usable(p, item) || value < 2)
+            if (!differ || !is_usable(p, item) || value < 2)
                 continue;
             slope = log((double)orl_srgb_decode((float)(value + 1) / 255) /
                         (double)orl_srgb_decode((float)(value - 1) / 255)) / 2;
@@ -252,8 +258,8 @@ static double stretch_of(const struct problem *p)
     double mean = mean_ev(p), along = 0, all = 0;
     for (size_t i = 0; i < p->photo_count; i++) {
         double ev = p->photos[i].ev - mean;
-        along += p->photos[i].use ? p->share[i] * ev * p->offset[i] : 0;
-        all += p->photos[i].use ? p->share[i] * ev * ev : 0;
+        along += counts(p, i) ? p->share[i] * ev * p->offset[i] : 0;
+        all += counts(p, i) ? p->share[i] * ev * ev : 0;
     }
     return all > 0 ? along / all : 0;
 }
@@ -267,9 +273,9 @@ static void add_offsets(const struct problem *p, bool stretches, double *a, size
     const double *share = p->share;
     double mean = mean_ev(p), firm = stretches ? 0 : 1;
     for (size_t i = 0; i < p->photo_count; i++) {
-        a[(TERMS + i) * n + TERMS + i] += p->photos[i].use ? 1 / (OFFSET_SIGMA * OFFSET_SIGMA) : 1;
+        a[(TERMS + i) * n + TERMS + i] += counts(p, i) ? 1 / (OFFSET_SIGMA * OFFSET_SIGMA) : 1;
         for (size_t k = 0; k < p->photo_count; k++)
-            if (p->photos[i].use && p->photos[k].use)
+            if (counts(p, i) && counts(p, k))
                 a[(TERMS + i) * n + TERMS + k] +=
                     FIRM * share[i] * share[k] *
                     (1 + firm * (p->photos[i].ev - mean) * (p->photos[k].ev - mean));
@@ -392,15 +398,14 @@ static enum orl_result fit_channel(const struct orl_log *log, struct problem *p,
     return ORL_OK;
 }
 
-static double exposure_range(const struct orl_samples *samples,
-                             const struct orl_response_photo *photos)
+static double exposure_range(const struct problem *p)
 {
     double least = INFINITY, most = -INFINITY;
-    for (size_t i = 0; i < samples->count; i++) {
-        const struct orl_response_photo *photo = &photos[samples->items[i].photo];
-        if (photo->use) {
-            least = fmin(least, photo->ev);
-            most = fmax(most, photo->ev);
+    for (size_t i = 0; i < p->samples->count; i++) {
+        uint32_t photo = p->samples->items[i].photo;
+        if (counts(p, photo)) {
+            least = fmin(least, p->photos[photo].ev);
+            most = fmax(most, p->photos[photo].ev);
         }
     }
     return most - least;
@@ -421,16 +426,16 @@ static void set_logarithms(struct problem *p)
 
 enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_method method,
                                  const struct orl_samples *samples,
-                                 const struct orl_response_photo *photos, size_t photo_count,
+                                 const struct orl_exposed *photos, size_t photo_count, int camera,
                                  struct orl_response *response, struct orl_response_fit *fit)
 {
     memset(fit, 0, sizeof *fit);
     set_srgb(response);
     fit->outcome = ORL_RESPONSE_ONE_EXPOSURE;
-    if (!(exposure_range(samples, photos) >= ORL_RESPONSE_RANGE_EV))
+    struct problem p = {.samples = samples, .photos = photos, .photo_count = photo_count, .camera = camera};
+    if (!(exposure_range(&p) >= ORL_RESPONSE_RANGE_EV))
         return ORL_OK;
     fit->outcome = ORL_RESPONSE_FOUND;
-    struct problem p = {.samples = samples, .photos = photos, .photo_count = photo_count};
     enum orl_result result = orl_robust_init(log, samples, TERMS + photo_count, &p.fit);
     p.light = orl_array(log, samples->count, sizeof *p.light);
     p.offset = orl_array(log, photo_count, 2 * sizeof *p.offset);
@@ -443,7 +448,8 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
     bool finds = method == ORL_RESPONSE_POLYNOMIAL;
     bool is_found = false;
     if (result == ORL_OK && !finds)
-        result = orl_response_opencv(log, method, samples, photos, photo_count, response->linear, &is_found);
+        result = orl_response_opencv(log, method, samples, photos, photo_count, camera, response->linear,
+                                     &is_found);
     if (!finds && !is_found)
         fit->outcome = ORL_RESPONSE_FEW_SAMPLES;
     for (int c = 0; result == ORL_OK && c < 3 && fit->outcome == ORL_RESPONSE_FOUND; c++)

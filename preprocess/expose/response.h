@@ -14,12 +14,6 @@ enum orl_response_outcome {
 };
 #define ORL_RESPONSE_RANGE_EV 0.5
 
-struct orl_response_photo {
-    bool use;        // true for photographs of this camera with a known exposure
-    double ev;       // log2 of exposure
-    float vignette[3]; // as in struct orl_photo
-};
-
 struct orl_response_fit {
     enum orl_response_outcome outcome;
     size_t points; // scene points seen at different exposures
@@ -27,6 +21,7 @@ struct orl_response_fit {
                                       // curve
 };
 
+// The response of the photographs of `camera`, of which it takes those whose exposure is known.
 // Debevec and Malik 1997, eq. 3, with points that only some photographs show, robust against
 // outliers. The curve is sRGB times the exponential of a smooth polynomial of the value. The
 // polynomial continues the curve where there are no samples. It also removes an ambiguity of series
@@ -38,7 +33,7 @@ struct orl_response_fit {
 // curve is taken even if sRGB explains the samples as well.
 enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_method method,
                                  const struct orl_samples *samples,
-                                 const struct orl_response_photo *photos, size_t photo_count,
+                                 const struct orl_exposed *photos, size_t photo_count, int camera,
                                  struct orl_response *response,
                                  struct orl_response_fit *fit) ORL_CHECK_RESULT;
 
@@ -46,7 +41,7 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
 // exposure.
 enum orl_result orl_response_opencv(const struct orl_log *log, enum orl_response_method method,
                                     const struct orl_samples *samples,
-                                    const struct orl_response_photo *photos, size_t photo_count,
+                                    const struct orl_exposed *photos, size_t photo_count, int camera,
                                     float linear[3][256], bool *found) ORL_CHECK_RESULT;
 
 #endif

@@ -23,22 +23,22 @@ struct exposures {
 };
 
 // Sets the series of the photographs that take part, each with the exposure of its darkest photograph.
-static enum orl_result find_exposures(const struct orl_log *log, const struct orl_response_photo *photos,
-                                      size_t photo_count, struct exposures *e)
+static enum orl_result find_exposures(const struct orl_log *log, const struct orl_exposed *photos,
+                                      size_t photo_count, int camera, struct exposures *e)
 {
-    struct orl_exposure *series = orl_array(log, photo_count, sizeof *series);
-    ORL_TRY_MEMORY(series);
+    struct orl_exposed *used = orl_array(log, photo_count, sizeof *used);
+    ORL_TRY_MEMORY(used);
     for (size_t i = 0; i < photo_count; i++) {
-        series[i] = (struct orl_exposure){.known = photos[i].use, .ev = photos[i].ev};
+        used[i] = (struct orl_exposed){.known = photos[i].camera == camera && photos[i].known, .ev = photos[i].ev};
         e->ev[i] = INFINITY;
     }
-    enum orl_result result = orl_exposures_group(log, series, photo_count, ORL_EXPOSURE_STEP_EV, true, &e->count);
+    enum orl_result result = orl_exposures_group(log, used, photo_count, ORL_EXPOSURE_STEP_EV, true, &e->count);
     for (size_t i = 0; result == ORL_OK && i < photo_count; i++) {
-        e->of[i] = photos[i].use ? series[i].series : -1;
-        if (photos[i].use)
-            e->ev[e->of[i]] = fmin(e->ev[e->of[i]], photos[i].ev);
+        e->of[i] = used[i].known ? used[i].series : -1;
+        if (used[i].known)
+            e->ev[e->of[i]] = fmin(e->ev[e->of[i]], used[i].ev);
     }
-    free(series);
+    free(used);
     return result;
 }
 
@@ -114,15 +114,15 @@ static size_t collect(const struct orl_samples *samples, const struct exposures 
 }
 
 enum orl_result orl_response_opencv(const struct orl_log *log, enum orl_response_method method,
-                                    const struct orl_samples *samples, const struct orl_response_photo *photos,
-                                    size_t photo_count, float linear[3][256], bool *found)
+                                    const struct orl_samples *samples, const struct orl_exposed *photos,
+                                    size_t photo_count, int camera, float linear[3][256], bool *found)
 {
     bool is_debevec = method == ORL_RESPONSE_DEBEVEC;
     struct orl_image values = {0};
     struct exposures e = {.of = orl_array(log, photo_count, sizeof *e.of),
                           .ev = orl_array(log, photo_count, sizeof *e.ev)};
     const struct orl_observation **seen = orl_array(log, photo_count, sizeof *seen);
-    enum orl_result result = e.of && e.ev && seen ? find_exposures(log, photos, photo_count, &e) : ORL_ERR_MEMORY;
+    enum orl_result result = e.of && e.ev && seen ? find_exposures(log, photos, photo_count, camera, &e) : ORL_ERR_MEMORY;
     size_t points = result == ORL_OK ? collect(samples, &e, 1, seen, NULL) : 0;
     size_t step = is_debevec ? (points + DEBEVEC_MAX - 1) / DEBEVEC_MAX : 1;
     *found = points >= POINTS_MIN;

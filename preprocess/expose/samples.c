@@ -69,7 +69,7 @@ static enum orl_result make_level(const struct orl_log *log, struct pyramid *p, 
 }
 
 static enum orl_result make_pyramid(const struct orl_log *log, const char *dir,
-                                    const struct orl_sample_photo *photo, struct pyramid *p)
+                                    const struct orl_exposed *photo, struct pyramid *p)
 {
     const struct orl_camera *c = &photo->view.camera;
     const char *path = ORL_PATH(dir, "%s", photo->name);
@@ -198,7 +198,7 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
     return ORL_OK;
 }
 
-static enum orl_result take_photo(struct taking *t, const struct orl_sample_photo *photo,
+static enum orl_result take_photo(struct taking *t, const struct orl_exposed *photo,
                                   uint32_t index)
 {
     struct orl_depth_buffer buffer = {0};
@@ -215,7 +215,7 @@ static enum orl_result take_photo(struct taking *t, const struct orl_sample_phot
 }
 
 enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_progress *progress,
-                                 const char *dir, const struct orl_sample_photo *photos,
+                                 const char *dir, const struct orl_exposed *photos,
                                  size_t photo_count, const struct orl_points *points,
                                  struct orl_samples *samples)
 {

@@ -3,14 +3,8 @@
 #define ORL_PREPROCESS_SAMPLES_H
 
 #include "oriel/progress.h"
-#include "oriel/camera.h"
 #include "oriel/points.h"
-
-// A photograph to take samples from.
-struct orl_sample_photo {
-    const char *name; // of the undistorted file in the folder of photographs
-    struct orl_view view;
-};
+#include "preprocess/expose/expose.h"
 
 // What one photograph shows of a point: the mean of a patch without edges that does not clip in
 // every channel.
@@ -33,7 +27,7 @@ struct orl_samples {
 // in every photograph: the point's radius to either side. Only points that at least two photographs
 // show are kept. Photographs are read one at a time.
 enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_progress *progress,
-                                 const char *dir, const struct orl_sample_photo *photos,
+                                 const char *dir, const struct orl_exposed *photos,
                                  size_t photo_count, const struct orl_points *points,
                                  struct orl_samples *samples) ORL_CHECK_RESULT;
 void orl_samples_finish(struct orl_samples *samples);

@@ -114,7 +114,7 @@ static const struct camera uneven[PHOTOS] = {
     {.exposure = {0.5, 0.5, 0.5}}, {.exposure = {1.8, 2, 1.9}},    {.exposure = {1, 0.9, 1.1}}};
 
 // Gains times exposure are the same for all photographs, whatever the reference is.
-static void check_gains(const struct orl_align_photo *photos, const struct camera *cameras,
+static void check_gains(const struct orl_exposed *photos, const struct camera *cameras,
                         double tolerance_ev)
 {
     for (int c = 0; c < 3; c++) {
@@ -129,7 +129,7 @@ static void gains_undo_exposure_and_colour(void **state)
 {
     (void)state;
     struct orl_samples samples = make_samples(uneven, 0.1, -4, -1.5);
-    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_exposed photos[PHOTOS] = {0};
     struct orl_alignment alignment;
     assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
     check_gains(photos, uneven, 0.02);
@@ -149,7 +149,7 @@ static void known_exposures_set_the_reference(void **state)
 {
     (void)state;
     struct orl_samples samples = make_samples(uneven, 0, -4, -1.5);
-    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_exposed photos[PHOTOS] = {0};
     struct orl_alignment alignment;
     double sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -173,7 +173,7 @@ static void vignetting_is_found(void **state)
     for (int i = 0; i < PHOTOS; i++)
         cameras[i].vignette = 0.4;
     struct orl_samples samples = make_samples(cameras, 0.05, -4, -1.5);
-    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_exposed photos[PHOTOS] = {0};
     struct orl_alignment alignment;
     assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
     const float *v = alignment.vignette[0];
@@ -196,7 +196,7 @@ static void dark_samples_have_little_say(void **state)
     static struct orl_observation items[4 * EACH];
     static uint32_t points[4 * EACH];
     struct orl_samples samples;
-    struct orl_align_photo photos[2] = {0};
+    struct orl_exposed photos[2] = {0};
     struct orl_alignment alignment;
     for (uint32_t i = 0; i < 4 * EACH; i++) {
         float value = i / 2 < EACH ? 200 : i % 2 ? 4 : 3;
@@ -214,7 +214,7 @@ static void implausible_gains_are_refused(void **state)
 {
     (void)state;
     struct orl_samples samples = make_samples(uneven, 0, -4, -1.5);
-    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_exposed photos[PHOTOS] = {0};
     struct orl_alignment alignment;
     for (int i = 0; i < PHOTOS; i++) {
         photos[i].known = true;
@@ -241,7 +241,7 @@ static void wrong_exposures_are_noticed(void **state)
 {
     (void)state;
     struct camera cameras[PHOTOS];
-    struct orl_align_photo photos[PHOTOS] = {0};
+    struct orl_exposed photos[PHOTOS] = {0};
     for (int i = 0; i < PHOTOS; i++) {
         double factor = exp2(1.5 * (i % 3 - 1));
         cameras[i] = (struct camera){.exposure = {factor, factor, factor}};
@@ -250,7 +250,7 @@ static void wrong_exposures_are_noticed(void **state)
     for (int told = 0; told < 2; told++) {
         struct orl_alignment alignment;
         for (int i = 0; i < PHOTOS; i++)
-            photos[i] = (struct orl_align_photo){.known = true, .ev = told ? 1.5 * (i % 3 - 1) : 0};
+            photos[i] = (struct orl_exposed){.known = true, .ev = told ? 1.5 * (i % 3 - 1) : 0};
         assert_int_equal(orl_align(NULL, &samples, photos, PHOTOS, &alignment), ORL_OK);
         assert_int_equal(orl_align_contradicts(photos, PHOTOS), !told);
         orl_alignment_finish(&alignment);
@@ -258,22 +258,22 @@ static void wrong_exposures_are_noticed(void **state)
     orl_samples_finish(&samples);
 }
 
-static void tell_exposures(struct orl_response_photo photos[PHOTOS])
+static void tell_exposures(struct orl_exposed photos[PHOTOS])
 {
     // As a camera tells them: what differs slightly from series to series stays untold.
     for (int i = 0; i < PHOTOS; i++)
-        photos[i] = (struct orl_response_photo){.use = true, .ev = 3 * (i % 3 - 1)};
+        photos[i] = (struct orl_exposed){.known = true, .ev = 3 * (i % 3 - 1)};
 }
 
 static void response_is_found(void **state)
 {
     (void)state;
     struct orl_samples samples = make_samples(bracket, 0.1, -9, 1);
-    struct orl_response_photo photos[PHOTOS];
+    struct orl_exposed photos[PHOTOS];
     struct orl_response response;
     struct orl_response_fit fit;
     tell_exposures(photos);
-    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response, &fit), ORL_OK);
     assert_int_equal(fit.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++) {
         double squares = 0, scale = 0, norm = 0, truth[256];
@@ -306,13 +306,13 @@ static void vignetting_of_every_order_is_undone(void **state)
     for (int i = 0; i < PHOTOS; i++)
         cameras[i].corner = 0.6;
     struct orl_samples samples = make_samples(cameras, 0, -9, 1);
-    struct orl_response_photo photos[PHOTOS];
+    struct orl_exposed photos[PHOTOS];
     struct orl_response response;
     struct orl_response_fit fit;
     tell_exposures(photos);
     for (int i = 0; i < PHOTOS; i++)
         photos[i].vignette[1] = -0.6f;
-    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response, &fit), ORL_OK);
     assert_int_equal(fit.outcome, ORL_RESPONSE_FOUND);
     print_message("spread %g EV\n", fit.spread_ev);
     assert_true(fit.spread_ev < 0.08);
@@ -329,7 +329,7 @@ static void curves_never_fall(void **state)
     for (int i = 0; i < PHOTOS; i++)
         cameras[i].film = false;
     struct orl_samples samples = make_samples(cameras, 0, -9, 1);
-    struct orl_response_photo photos[PHOTOS];
+    struct orl_exposed photos[PHOTOS];
     struct orl_response response;
     struct orl_response_fit fit;
     tell_exposures(photos);
@@ -337,7 +337,7 @@ static void curves_never_fall(void **state)
         for (int c = 0; c < 3; c++)
             if (samples.items[i].value[c] > 128)
                 samples.items[i].value[c] = 128 + 0.9f * (255 - samples.items[i].value[c]);
-    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response, &fit), ORL_OK);
     assert_int_equal(fit.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++)
         for (int v = 1; v < 256; v++)
@@ -352,7 +352,7 @@ static void response_of_srgb_is_srgb(void **state)
     (void)state;
     for (int worse = 0; worse < 4; worse++) {
         struct camera cameras[PHOTOS];
-        struct orl_response_photo photos[PHOTOS];
+        struct orl_exposed photos[PHOTOS];
         struct orl_response response;
         struct orl_response_fit fit;
         memcpy(cameras, bracket, sizeof cameras);
@@ -364,7 +364,7 @@ static void response_of_srgb_is_srgb(void **state)
         }
         struct orl_samples samples = make_samples(cameras, 0.1, -9, 1);
         tell_exposures(photos);
-        assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response,
+        assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response,
                                           &fit), ORL_OK);
         assert_int_equal(fit.outcome, ORL_RESPONSE_SRGB);
         orl_samples_finish(&samples);
@@ -382,20 +382,20 @@ static void response_stays_srgb_without_reason(void **state)
             cameras[i].exposure[c] = exp2(3 * (i % 3 - 1));
     }
     struct orl_samples samples = make_samples(cameras, 0.1, -9, 1);
-    struct orl_response_photo photos[PHOTOS];
+    struct orl_exposed photos[PHOTOS];
     struct orl_response response;
     struct orl_response_fit fit;
     tell_exposures(photos);
-    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response, &fit), ORL_OK);
     assert_int_equal(fit.outcome, ORL_RESPONSE_SRGB);
     assert_float_equal(response.linear[1][128], orl_srgb_decode(128 / 255.0f), 1e-6);
     for (int i = 0; i < PHOTOS; i++)
         photos[i].ev = 0.1 * i;
-    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response, &fit), ORL_OK);
     assert_int_equal(fit.outcome, ORL_RESPONSE_FEW_SAMPLES);
     for (int i = 0; i < PHOTOS; i++)
         photos[i].ev = 0.05 * i;
-    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, &response, &fit), ORL_OK);
+    assert_int_equal(orl_response_fit(NULL, ORL_RESPONSE_POLYNOMIAL, &samples, photos, PHOTOS, 0, &response, &fit), ORL_OK);
     assert_int_equal(fit.outcome, ORL_RESPONSE_ONE_EXPOSURE);
     orl_samples_finish(&samples);
 }
@@ -423,15 +423,15 @@ static void samples_show_what_photographs_have_in_common(void **state)
 {
     (void)state;
     static const float places[6][3] = {{0, 0, 4}, {0, -3, 4}, {0, 3, 4}, {-2, 0, 4}, {2, 0, 4}, {1.5f, 0, 3}};
-    struct orl_sample_photo photos[2];
+    struct orl_exposed photos[2];
     struct orl_points points;
     struct orl_samples samples;
     char *dir, *path;
     assert_int_equal(test_file_make("ramp.png", &dir, &path), 0);
     write_ramp(path);
     for (int i = 0; i < 2; i++)
-        photos[i] = (struct orl_sample_photo){
-            "ramp.png", {{SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2},
+        photos[i] = (struct orl_exposed){
+            .name = "ramp.png", .view = {{SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2},
                    {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {-0.2 * i, 0, 0}}}};
     assert_int_equal(orl_points_init(NULL, &points, 6), ORL_OK);
     for (int i = 0; i < 6; i++) {

@@ -41,7 +41,7 @@ static void groups_exposures(void **state)
     (void)state;
     // Two brackets with a jitter of a twentieth of a stop, one unknown, and a held-out
     // photograph that must not move the median.
-    struct orl_exposure e[] = {
+    struct orl_exposed e[] = {
         {.known = true, .ev = -8}, {.known = true, .ev = -10},  {.known = true, .ev = -8.05},
         {.known = false},          {.known = true, .ev = -8.02}, {.known = true, .ev = -10.03},
         {.known = true, .test = true, .ev = 3},
@@ -59,12 +59,12 @@ static void groups_exposures(void **state)
     assert_false(e[3].known);
     assert_float_equal(e[6].ev, 11.05, 1e-12);
     // As far apart as a step: two series. The median is that of the lower one.
-    struct orl_exposure two[2] = {{.known = true, .ev = ORL_EXPOSURE_STEP_EV}, {.known = true}};
+    struct orl_exposed two[2] = {{.known = true, .ev = ORL_EXPOSURE_STEP_EV}, {.known = true}};
     assert_int_equal(orl_exposures_group(NULL, two, 2, ORL_EXPOSURE_STEP_EV, false, &series), ORL_OK);
     assert_int_equal(series, 2);
     assert_float_equal(two[0].ev, ORL_EXPOSURE_STEP_EV, 0);
     assert_float_equal(two[1].ev, 0, 0);
-    struct orl_exposure none[2] = {{0}, {.known = true, .test = true, .ev = 5}};
+    struct orl_exposed none[2] = {{0}, {.known = true, .test = true, .ev = 5}};
     assert_int_equal(orl_exposures_group(NULL, none, 2, ORL_EXPOSURE_STEP_EV, false, &series), ORL_OK);
     assert_int_equal(series, 1);
     assert_false(none[1].known);

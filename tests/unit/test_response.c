@@ -114,12 +114,12 @@ static struct orl_samples samples_of(const struct stack *stack)
 
 static void fit(enum orl_response_method method, const struct stack *stack, struct orl_response *response)
 {
-    struct orl_response_photo photos[PHOTOS_MAX] = {0};
+    struct orl_exposed photos[PHOTOS_MAX] = {0};
     struct orl_response_fit found;
     struct orl_samples samples = samples_of(stack);
     for (int i = 0; i < stack->photos; i++)
-        photos[i] = (struct orl_response_photo){.use = true, .ev = stack->ev[i]};
-    assert_int_equal(orl_response_fit(NULL, method, &samples, photos, (size_t)stack->photos, response,
+        photos[i] = (struct orl_exposed){.known = true, .ev = stack->ev[i]};
+    assert_int_equal(orl_response_fit(NULL, method, &samples, photos, (size_t)stack->photos, 0, response,
                                       &found), ORL_OK);
     assert_int_equal(found.outcome, ORL_RESPONSE_FOUND);
     for (int c = 0; c < 3; c++)
@@ -220,7 +220,7 @@ static void one_viewpoint_gives_samples(void **state)
     (void)state;
     enum { COUNT = 3 };
     char *dir = test_dir_make(), names[COUNT][16];
-    struct orl_sample_photo photos[COUNT];
+    struct orl_exposed photos[COUNT];
     struct orl_samples samples;
     for (int i = 0; i < COUNT; i++) {
         struct orl_image image;
@@ -230,8 +230,8 @@ static void one_viewpoint_gives_samples(void **state)
             image.u8[k] = (uint8_t)wall_value(k / 3 % SIDE, k % 3, 2 * (i - 1));
         assert_int_equal(orl_png_write(NULL, ORL_PATH(dir, "%s", names[i]), &image), ORL_OK);
         orl_image_finish(&image);
-        photos[i] = (struct orl_sample_photo){
-            names[i], {{SIDE, SIDE, SIDE, SIDE, SIDE / 2.0, SIDE / 2.0},
+        photos[i] = (struct orl_exposed){
+            .name = names[i], .view = {{SIDE, SIDE, SIDE, SIDE, SIDE / 2.0, SIDE / 2.0},
                        {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0}}}};
     }
     struct orl_points points = make_wall();
