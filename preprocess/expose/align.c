@@ -30,32 +30,40 @@ static const double LIMIT_EV = 2, COLOUR_LIMIT_EV = 1;
 
 // --- the problem: log colour + log gain - log vignetting is equal for all observations of a point ---
 
+struct lens {
+    size_t photos;
+    double terms[LENS_TERMS]; // found so far: log vignetting = sum of terms[k] r^(2 k + 2)
+};
+
 struct problem {
     const struct orl_log *log;
     const struct orl_samples *samples;
     struct orl_exposed *photos;
-    size_t photo_count, lens_count;
+    size_t photo_count, all_count, lens_count;
     struct orl_robust_fit fit; // unknowns: log gain of each photograph, LENS_TERMS of each lens
     int channel;
     bool with_lens;
-    float (*value)[4];  // log of linear colour: r g b and their mean; per observation
-    float *lens_log;    // log of the vignetting found so far
-    double *prior, *precision;
-    size_t *lens_photos;        // photographs of each lens
-    double (*lens)[LENS_TERMS]; // log vignetting = sum of lens[k] r^(2 k + 2)
+    float (*value)[4]; // log of linear colour: r g b and their mean; per observation
+    double centre_ev;  // of the known exposures
+    struct lens *lenses;
 };
+
+static double lens_log(const double terms[LENS_TERMS], double r2)
+{
+    return r2 * (terms[0] + r2 * (terms[1] + r2 * terms[2]));
+}
 
 static void set_equation(const void *problem, size_t i, struct orl_equation *equation)
 {
     const struct problem *p = problem;
     const struct orl_observation *item = &p->samples->items[i];
-    size_t lens = p->photo_count + LENS_TERMS * (size_t)p->photos[item->photo].lens;
-    double power = 1;
-    equation->value = (double)(p->value[i][p->channel] - p->lens_log[i]);
+    int lens = p->photos[item->photo].lens;
+    double r2 = (double)item->r2, power = 1;
+    equation->value = (double)(p->value[i][p->channel] - (float)lens_log(p->lenses[lens].terms, r2));
     orl_equation_add(equation, item->photo, 1);
     for (size_t k = 0; p->with_lens && k < LENS_TERMS; k++) {
-        power *= (double)item->r2;
-        orl_equation_add(equation, lens + k, -power);
+        power *= r2;
+        orl_equation_add(equation, p->photo_count + LENS_TERMS * (size_t)lens + k, -power);
     }
 }
 
@@ -80,14 +88,16 @@ static bool step(struct problem *p, double scale)
     size_t n = p->photo_count + (p->with_lens ? LENS_TERMS * p->lens_count : 0);
     double *x = p->fit.x;
     orl_robust_equations(&p->fit, n, p, set_equation);
-    for (size_t i = 0; i < n; i++) {
-        bool photo = i < p->photo_count;
-        size_t lens = photo ? 0 : (i - p->photo_count) / LENS_TERMS;
-        double precision = photo ? p->precision[i]
-                           : p->lens_photos[lens] < LENS_PHOTOS_MIN ? 1e12 : 1;
-        p->fit.matrix[i * n + i] += precision / scale;
-        x[i] += photo ? precision / scale * p->prior[i] : 0;
+    for (size_t i = 0; i < p->photo_count; i++) {
+        const struct orl_exposed *photo = &p->photos[i];
+        double sigma = M_LN2 * (photo->known ? EXPOSURE_SIGMA_EV : UNKNOWN_SIGMA_EV);
+        double precision = 1 / (sigma * sigma) / scale;
+        p->fit.matrix[i * n + i] += precision;
+        x[i] += precision * (photo->known ? -M_LN2 * (photo->ev - p->centre_ev) : 0);
     }
+    for (size_t i = p->photo_count; i < n; i++)
+        p->fit.matrix[i * n + i] +=
+            (p->lenses[(i - p->photo_count) / LENS_TERMS].photos < LENS_PHOTOS_MIN ? 1e12 : 1) / scale;
     return orl_cholesky_solve(p->fit.matrix, x, n);
 }
 
@@ -112,11 +122,6 @@ static enum orl_result fit(struct problem *p, int channel, bool with_lens)
 }
 
 // --- vignetting ---
-
-static double lens_log(const double terms[LENS_TERMS], double r2)
-{
-    return r2 * (terms[0] + r2 * (terms[1] + r2 * terms[2]));
-}
 
 // True when the light falls off by a plausible amount as far out as there are samples.
 static bool is_lens(const double terms[LENS_TERMS], double r2_max)
@@ -159,7 +164,7 @@ static double farthest(const struct problem *p, size_t lens)
     return (double)r2;
 }
 
-static enum orl_result fit_lenses(struct problem *p, struct orl_alignment *alignment)
+static enum orl_result fit_lenses(struct problem *p)
 {
     enum orl_result result = fit(p, 3, false);
     double before = orl_robust_spread(&p->fit, false);
@@ -170,15 +175,14 @@ static enum orl_result fit_lenses(struct problem *p, struct orl_alignment *align
     for (size_t k = 0; k < p->lens_count; k++) {
         const double *terms = p->fit.x + p->photo_count + LENS_TERMS * k;
         double r2_max = farthest(p, k);
+        float vignette[3];
         if (!(r2_max > 0.3) || !is_lens(terms, r2_max))
             continue;
-        memcpy(p->lens[k], terms, sizeof p->lens[k]);
-        to_polynomial(terms, r2_max, alignment->vignette[k]);
-    }
-    for (size_t i = 0; i < p->samples->count; i++) {
-        const struct orl_observation *item = &p->samples->items[i];
-        p->lens_log[i] =
-            (float)lens_log(p->lens[p->photos[item->photo].lens], (double)item->r2);
+        memcpy(p->lenses[k].terms, terms, sizeof p->lenses[k].terms);
+        to_polynomial(terms, r2_max, vignette);
+        for (size_t i = 0; i < p->all_count; i++)
+            if ((size_t)p->photos[i].lens == k)
+                memcpy(p->photos[i].vignette, vignette, sizeof vignette);
     }
     return ORL_OK;
 }
@@ -231,17 +235,6 @@ static double mean_ev(const struct problem *p)
             count++;
         }
     return count > 0 ? sum / count : 0;
-}
-
-static void set_prior(struct problem *p)
-{
-    double centre = mean_ev(p);
-    for (size_t i = 0; i < p->photo_count; i++) {
-        const struct orl_exposed *photo = &p->photos[i];
-        double sigma = M_LN2 * (photo->known ? EXPOSURE_SIGMA_EV : UNKNOWN_SIGMA_EV);
-        p->prior[i] = photo->known ? -M_LN2 * (photo->ev - centre) : 0;
-        p->precision[i] = 1 / (sigma * sigma);
-    }
 }
 
 // Shifts the channel's gains so that known exposures are undone on average.
@@ -317,7 +310,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
 {
     enum orl_result result = ORL_OK;
     bool again = true;
-    set_prior(p);
+    p->centre_ev = mean_ev(p);
     for (int round = 0; result == ORL_OK && again && round < ROUNDS; round++) {
         set_values(p);
         count_samples(p);
@@ -326,7 +319,7 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
             orl_robust_reset(&p->fit);
             residuals(p);
             alignment->spread_before_ev = orl_robust_spread(&p->fit, false) / M_LN2;
-            result = fit_lenses(p, alignment);
+            result = fit_lenses(p);
         }
         for (int c = 0; result == ORL_OK && c < 4; c++) {
             result = fit(p, c, false);
@@ -342,49 +335,35 @@ static enum orl_result solve_all(struct problem *p, struct orl_alignment *alignm
     return result;
 }
 
-static size_t lens_count(const struct orl_exposed *photos, size_t count)
+static enum orl_result count_lenses(struct problem *p)
 {
-    int lenses = 0;
-    for (size_t i = 0; i < count; i++)
-        lenses = photos[i].lens >= lenses ? photos[i].lens + 1 : lenses;
-    return (size_t)lenses;
+    for (size_t i = 0; i < p->photo_count; i++)
+        p->lens_count = (size_t)p->photos[i].lens >= p->lens_count ? (size_t)p->photos[i].lens + 1 : p->lens_count;
+    p->lenses = orl_array(p->log, p->lens_count, sizeof *p->lenses);
+    ORL_TRY_MEMORY(p->lenses);
+    for (size_t i = 0; i < p->photo_count; i++)
+        p->lenses[p->photos[i].lens].photos++;
+    return ORL_OK;
 }
 
 enum orl_result orl_align(const struct orl_log *log, const struct orl_samples *samples,
-                          struct orl_exposed *photos, size_t photo_count,
+                          struct orl_exposed *photos, size_t photo_count, size_t all_count,
                           struct orl_alignment *alignment)
 {
     memset(alignment, 0, sizeof *alignment);
     struct problem p = {.log = log, .samples = samples, .photos = photos, .photo_count = photo_count,
-                        .lens_count = lens_count(photos, photo_count)};
-    size_t unknowns = photo_count + LENS_TERMS * p.lens_count, count = samples->count;
-    float *floats = orl_array(log, count, 5 * sizeof *floats);
-    double *doubles = orl_array(log, unknowns, 2 * sizeof *doubles);
-    enum orl_result result = orl_robust_init(log, samples, unknowns, &p.fit);
-    p.lens_photos = orl_array(log, p.lens_count, sizeof *p.lens_photos);
-    alignment->vignette = orl_array(log, p.lens_count, sizeof *alignment->vignette);
-    alignment->lens_count = p.lens_count;
-    if (!floats || !doubles || !p.lens_photos || !alignment->vignette)
-        result = ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        p.value = (float (*)[4])floats;
-        p.lens_log = floats + 4 * count;
-        p.prior = doubles;
-        p.precision = doubles + photo_count;
-        p.lens = (double (*)[LENS_TERMS])(p.precision + photo_count);
-        for (size_t i = 0; i < photo_count; i++) {
-            photos[i].refused = false;
-            photos[i].off_ev = 0;
-            p.lens_photos[photos[i].lens]++;
-        }
-        result = solve_all(&p, alignment);
+                        .all_count = all_count, .value = orl_array(log, samples->count, sizeof *p.value)};
+    for (size_t i = 0; i < all_count; i++) {
+        photos[i].refused = false;
+        photos[i].off_ev = 0;
+        memset(photos[i].vignette, 0, sizeof photos[i].vignette);
     }
+    enum orl_result result = p.value ? count_lenses(&p) : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_robust_init(log, samples, photo_count + LENS_TERMS * p.lens_count, &p.fit));
+    ORL_THEN(result, solve_all(&p, alignment));
     orl_robust_finish(&p.fit);
-    free(floats);
-    free(doubles);
-    free(p.lens_photos);
-    if (result != ORL_OK)
-        orl_alignment_finish(alignment);
+    free(p.value);
+    free(p.lenses);
     return result;
 }
 
@@ -396,10 +375,4 @@ bool orl_align_contradicts(const struct orl_exposed *photos, size_t count)
         unlike += photos[i].known && photos[i].off_ev > UNLIKE_EV;
     }
     return unlike > 0 && 4 * unlike >= known;
-}
-
-void orl_alignment_finish(struct orl_alignment *alignment)
-{
-    free(alignment->vignette);
-    memset(alignment, 0, sizeof *alignment);
 }

@@ -281,14 +281,9 @@ static void say_alignment(const struct exposing *e, const struct orl_alignment *
 
 static enum orl_result align(struct exposing *e)
 {
-    struct orl_alignment alignment = {0};
-    ORL_TRY(orl_align(e->job->log, &e->samples, e->exposed, e->train, &alignment));
+    struct orl_alignment alignment;
+    ORL_TRY(orl_align(e->job->log, &e->samples, e->exposed, e->train, e->count, &alignment));
     e->contradicted = orl_align_contradicts(e->exposed, e->train);
-    for (size_t i = 0; i < e->count; i++) {
-        struct orl_exposed *photo = &e->exposed[i];
-        if ((size_t)photo->lens < alignment.lens_count)
-            memcpy(photo->vignette, alignment.vignette[photo->lens], sizeof photo->vignette);
-    }
     if (e->last) {
         say_alignment(e, &alignment);
         json_object_set_new(e->record, "co_visible_points",
@@ -297,7 +292,6 @@ static enum orl_result align(struct exposing *e)
                             json_real(alignment.spread_before_ev));
         json_object_set_new(e->record, "spread_after_ev", json_real(alignment.spread_after_ev));
     }
-    orl_alignment_finish(&alignment);
     return ORL_OK;
 }
 
