@@ -15,14 +15,12 @@ struct orl_exr_channel {
     size_t stride;     // floats from one pixel to the next
 };
 
-// OpenEXR's standard attributes. Zero and NULL mean unknown; such attributes are left out.
+// OpenEXR's standard attributes. What is false or NULL is left out.
 struct orl_exr_view_attributes {
     // Gives worldToCamera (row vectors, left-handed, +z forward, y up, as OpenEXR defines it),
     // worldToNDC, screenWindowWidth and screenWindowCenter.
     const struct orl_view *view;
-    double exposure_s, iso, aperture; // expTime in seconds, isoSpeed, aperture as f-number
-    double white_luminance;           // whiteLuminance: cd/m2 of RGB (1, 1, 1)
-    bool srgb_primaries;              // chromaticities of Rec. 709 / sRGB
+    bool srgb_primaries; // chromaticities of Rec. 709 / sRGB
     bool latlong; // envmap: OpenEXR's latitude-longitude map of all directions; only the
                   // pose of `view` is used
     const char *comments;

@@ -106,16 +106,6 @@ static enum orl_result set_attributes(const struct exr_writer *writer)
     }
     if (a->latlong)
         ORL_TRY(check(writer, exr_attr_set_envmap(context, 0, "envmap", EXR_ENVMAP_LATLONG)));
-    const struct {
-        const char *name;
-        double value;
-    } numbers[] = {{"expTime", a->exposure_s},
-                   {"isoSpeed", a->iso},
-                   {"aperture", a->aperture},
-                   {"whiteLuminance", a->white_luminance}};
-    for (size_t i = 0; i < ORL_COUNT(numbers); i++)
-        if (numbers[i].value > 0)
-            ORL_TRY(check(writer, exr_attr_set_float(context, 0, numbers[i].name, (float)numbers[i].value)));
     if (a->srgb_primaries) {
         const exr_attr_chromaticities_t rec709 = {
             .red_x = 0.64f, .red_y = 0.33f, .green_x = 0.3f, .green_y = 0.6f,

@@ -182,7 +182,7 @@ static void transform(const exr_attr_m44f_t *m, const double point[3], double ou
         out[c] = h[c] / h[3];
 }
 
-static void camera_and_exposure_attributes(void **state)
+static void camera_attributes(void **state)
 {
     (void)state;
     struct orl_image image = picture(64, 32, 1);
@@ -191,8 +191,7 @@ static void camera_and_exposure_attributes(void **state)
         orl_pose_look_at((double[]){1, -2, 3}, (double[]){0.2, 0.1, -0.5}, (double[]){0, -1, 0.2});
     struct orl_exr_params params = rgb_params(&image, true);
     params.attributes = (struct orl_exr_view_attributes){
-        .view = &view, .exposure_s = 0.004, .iso = 200, .aperture = 5.6, .white_luminance = 120,
-        .srgb_primaries = true, .comments = "a comment"};
+        .view = &view, .srgb_primaries = true, .comments = "a comment"};
     assert_int_equal(orl_exr_write(NULL, file, &params), ORL_OK);
 
     exr_context_t context;
@@ -216,14 +215,6 @@ static void camera_and_exposure_attributes(void **state)
     assert_int_equal(exr_get_screen_window_center(context, 0, &centre), EXR_ERR_SUCCESS);
     assert_float_equal(centre.x, (32 - 30) / 70.0, 1e-6); // right of the axis
     assert_float_equal(centre.y, (17 - 16) / 75.0, 1e-6); // above it
-    assert_int_equal(exr_attr_get_float(context, 0, "expTime", &number), EXR_ERR_SUCCESS);
-    assert_float_equal(number, 0.004, 1e-8);
-    assert_int_equal(exr_attr_get_float(context, 0, "isoSpeed", &number), EXR_ERR_SUCCESS);
-    assert_float_equal(number, 200, 0);
-    assert_int_equal(exr_attr_get_float(context, 0, "aperture", &number), EXR_ERR_SUCCESS);
-    assert_float_equal(number, 5.6, 1e-6);
-    assert_int_equal(exr_attr_get_float(context, 0, "whiteLuminance", &number), EXR_ERR_SUCCESS);
-    assert_float_equal(number, 120, 0);
     exr_attr_chromaticities_t c;
     assert_int_equal(exr_attr_get_chromaticities(context, 0, "chromaticities", &c),
                      EXR_ERR_SUCCESS);
@@ -246,9 +237,7 @@ static void nothing_is_said_that_is_not_known(void **state)
     exr_context_t context;
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     assert_int_equal(exr_start_read(&context, file, &init), EXR_ERR_SUCCESS);
-    static const char *const names[] = {"worldToCamera", "worldToNDC", "expTime",
-                                        "isoSpeed", "whiteLuminance", "chromaticities",
-                                        "comments"};
+    static const char *const names[] = {"worldToCamera", "worldToNDC", "chromaticities", "comments"};
     const exr_attribute_t *attribute;
     for (size_t i = 0; i < ORL_COUNT(names); i++)
         assert_int_not_equal(exr_get_attribute_by_name(context, 0, names[i], &attribute),
@@ -264,8 +253,7 @@ static struct orl_exr_params framed(const struct orl_image *color, const struct 
 {
     struct orl_exr_params params = rgb_params(color, true);
     params.attributes = (struct orl_exr_view_attributes){
-        .view = view, .exposure_s = 0.25, .iso = 400, .aperture = 8, .white_luminance = 100,
-        .srgb_primaries = true, .comments = "seen by others"};
+        .view = view, .srgb_primaries = true, .comments = "seen by others"};
     assert_true(orl_exr_add_channel(&params, "depth.Z", false, depth, 0));
     assert_false(orl_exr_add_channel(&params, "a name that is longer than any channel's", false,
                                      depth, 0));
@@ -329,8 +317,7 @@ static void exrheader_sees_channels_and_attributes(void **state)
     }
     static const char *const lines[] = {
         "depth.Z, 32-bit floating-point", "R, 16-bit floating-point", "(type compression): zip",
-        "expTime (type float): 0.25", "isoSpeed (type float): 400", "aperture (type float): 8",
-        "whiteLuminance (type float): 100", "red   (0.64 0.33)", "seen by others",
+        "red   (0.64 0.33)", "seen by others",
         "software (type string): \"Oriel",
         // y down to y up; translation in the last row
         "worldToCamera (type m44f):\n   (1 0 0 0\n    0 -1 0 0\n    0 0 1 0\n    0 -2 5 1)"};
@@ -532,7 +519,7 @@ int main(void)
         cmocka_unit_test(halves_round_and_clamp),
         cmocka_unit_test(chunks_that_hardly_compress),
         cmocka_unit_test(layers_and_channel_choice),
-        cmocka_unit_test(camera_and_exposure_attributes),
+        cmocka_unit_test(camera_attributes),
         cmocka_unit_test(nothing_is_said_that_is_not_known),
         cmocka_unit_test(opencv_reads_the_same_colours),
         cmocka_unit_test(exrheader_sees_channels_and_attributes),
