@@ -63,7 +63,6 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_expose
 struct photo {
     const struct orl_source *source;
     const struct orl_colmap_image *image;
-    enum orl_exposure_source from;
     int response; // index into the responses, -1: sRGB
     double metering[2]; // orl_photo.metering and metered_ev
 };
@@ -139,9 +138,9 @@ static enum orl_result find_photos(struct exposing *e)
 static enum orl_result set_exposures(struct exposing *e)
 {
     for (size_t i = 0; i < e->count; i++) {
-        struct photo *photo = &e->photos[i];
-        photo->from = orl_source_exposure(e->job, photo->source, &e->exposed[i].ev);
-        e->exposed[i].known = photo->from != ORL_EXPOSURE_UNKNOWN;
+        struct orl_exposed *photo = &e->exposed[i];
+        photo->from = orl_source_exposure(e->job, e->photos[i].source, &photo->ev);
+        photo->known = photo->from != ORL_EXPOSURE_UNKNOWN;
     }
     return orl_exposures_group(e->job->log, e->exposed, e->count, ORL_EXPOSURE_STEP_EV, false,
                                &e->series_count);
@@ -161,7 +160,7 @@ static enum orl_result estimate_exposures(struct exposing *e)
             continue;
         exposure->known = true;
         exposure->ev = -log2((double)gain[0] * (double)gain[1] * (double)gain[2]) / 3;
-        e->photos[i].from = ORL_EXPOSURE_SCENE;
+        exposure->from = ORL_EXPOSURE_SCENE;
         estimated++;
     }
     if (!estimated)
@@ -301,8 +300,8 @@ static enum orl_result heed_pictures(struct exposing *e, bool *again)
 {
     size_t told = 0, listed = 0;
     for (size_t i = 0; i < e->count; i++) {
-        told += e->photos[i].from == ORL_EXPOSURE_EXIF;
-        listed += e->photos[i].from == ORL_EXPOSURE_LIST;
+        told += e->exposed[i].from == ORL_EXPOSURE_EXIF;
+        listed += e->exposed[i].from == ORL_EXPOSURE_LIST;
     }
     *again = told > listed;
     orl_logf(e->job->log, ORL_LOG_WARNING, "expose: the exposures that %s do not fit the pictures, "
@@ -311,7 +310,7 @@ static enum orl_result heed_pictures(struct exposing *e, bool *again)
              *again ? "; they are estimated from the pictures. --exposures FILE takes a list" : "");
     for (size_t i = 0; *again && i < e->count; i++) {
         e->exposed[i].known = false;
-        e->photos[i].from = ORL_EXPOSURE_UNKNOWN;
+        e->exposed[i].from = ORL_EXPOSURE_UNKNOWN;
     }
     return orl_exposures_group(e->job->log, e->exposed, e->count, ORL_EXPOSURE_STEP_EV, false,
                                &e->series_count);
@@ -359,14 +358,6 @@ static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, 
     return ORL_OK;
 }
 
-// Light of a training photograph with this gain, log2.
-static enum orl_result meter_photo(const struct exposing *e, size_t i, const float gain[3], double *light)
-{
-    const struct orl_exposed *photo = &e->exposed[i];
-    return orl_photo_metered(e->job->log, ORL_PATH(e->job->dir, "images/%s", photo->name), &photo->view.camera, gain,
-                             photo->vignette, light);
-}
-
 // Photographs whose exposures the camera chose by itself are one series. Merged as a bracket is, they give no
 // wider range of light, and a worse picture.
 static enum orl_result join_metered(struct exposing *e)
@@ -375,56 +366,35 @@ static enum orl_result join_metered(struct exposing *e)
     const struct orl_log *log = e->job->log;
     if (e->series_count < 2)
         return ORL_OK;
-    double *ev = orl_array(log, e->train, sizeof *ev);
-    double *light = orl_array(log, e->train, sizeof *light);
-    enum orl_result result = ev && light ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < e->train; i++) {
-        ev[i] = e->exposed[i].ev;
-        result = meter_photo(e, i, as_it_is, &light[i]);
-    }
-    if (result == ORL_OK && orl_exposures_are_metered(ev, light, e->train)) {
-        orl_logf(log, ORL_LOG_INFO, "expose: the camera chose the exposures by itself: they are no bracket");
-        e->series_count = 1;
-        for (size_t i = 0; i < e->count; i++)
-            e->exposed[i].series = 0;
-    }
-    free(ev);
-    free(light);
-    return result;
+    for (size_t i = 0; i < e->train; i++)
+        ORL_TRY(orl_photo_metered(log, ORL_PATH(e->job->dir, "images"), &e->exposed[i], as_it_is));
+    if (!orl_exposures_are_metered(e->exposed, e->train))
+        return ORL_OK;
+    orl_logf(log, ORL_LOG_INFO, "expose: the camera chose the exposures by itself: they are no bracket");
+    e->series_count = 1;
+    for (size_t i = 0; i < e->count; i++)
+        e->exposed[i].series = 0;
+    return ORL_OK;
 }
 
 static enum orl_result guess_held_out(struct exposing *e)
 {
+    static const char *const guesses[] = {ORL_GAIN_GUESSES(ORL_ENUM_NAME)};
     const struct orl_log *log = e->job->log;
     double metering[2];
     if (e->count == e->train)
         return ORL_OK;
-    struct orl_gain_view *views = orl_array(log, e->count, sizeof *views);
     uint32_t *shared = orl_array(log, e->count, e->train * sizeof *shared);
     uint32_t *own = orl_array(log, e->count, sizeof *own);
-    enum orl_result result = views && shared && own ? count_shared(e, shared, own)
-                                                    : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
-        bool told = e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
-        const struct orl_exposed *photo = &e->exposed[i];
-        views[i].known = told && photo->known;
-        views[i].ev = photo->ev;
-        memcpy(views[i].gain, photo->gain, sizeof views[i].gain);
-        orl_pose_centre(&photo->view.cam_from_world, views[i].eye);
-        if (i < e->train)
-            result = meter_photo(e, i, photo->gain, &views[i].light);
-    }
+    enum orl_result result = shared && own ? count_shared(e, shared, own) : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < e->train; i++)
+        result = orl_photo_metered(log, ORL_PATH(e->job->dir, "images"), &e->exposed[i], e->exposed[i].gain);
     if (result == ORL_OK) {
-        static const char *const guesses[] = {ORL_GAIN_GUESSES(ORL_ENUM_NAME)};
-        enum orl_gain_guess guess = orl_gains_guess(views, e->train, views + e->train,
-                                                    e->count - e->train, shared, own, metering);
-        for (size_t i = e->train; i < e->count; i++) {
-            memcpy(e->exposed[i].gain, views[i].gain, sizeof views[i].gain);
+        enum orl_gain_guess guess = orl_gains_guess(e->exposed, e->train, e->count, shared, own, metering);
+        for (size_t i = e->train; i < e->count; i++)
             memcpy(e->photos[i].metering, metering, sizeof metering);
-        }
         json_object_set_new(e->record, "held_out_gain", json_string(guesses[guess]));
     }
-    free(views);
     free(shared);
     free(own);
     return result;
@@ -440,8 +410,8 @@ static json_t *photo_record(const struct photo *p, const struct orl_exposed *e)
         "{s:s, s:s, s:o, s:i, s:[f,f,f]}", "name", e->name, "split",
         e->test ? "test" : "train", "exposure_ev", e->known ? json_real(e->ev) : json_null(),
         "series", e->series, "gain", (double)e->gain[0], (double)e->gain[1], (double)e->gain[2]);
-    if (e->known && from[p->from])
-        json_object_set_new(entry, "exposure_from", json_string(from[p->from]));
+    if (e->known && from[e->from])
+        json_object_set_new(entry, "exposure_from", json_string(from[e->from]));
     if (e->vignette[0] != 0 || e->vignette[1] != 0 || e->vignette[2] != 0)
         json_object_set_new(entry, "vignette",
                             json_pack("[f,f,f]", (double)e->vignette[0], (double)e->vignette[1],
@@ -460,7 +430,7 @@ static void write_record(const struct exposing *e)
     size_t told = 0;
     for (size_t i = 0; i < e->count; i++) {
         json_array_append_new(photos, photo_record(&e->photos[i], &e->exposed[i]));
-        told += e->photos[i].from == ORL_EXPOSURE_EXIF || e->photos[i].from == ORL_EXPOSURE_LIST;
+        told += e->exposed[i].from == ORL_EXPOSURE_EXIF || e->exposed[i].from == ORL_EXPOSURE_LIST;
     }
     json_object_set_new(e->record, "photographs", photos);
     json_object_set(e->record, "responses", e->response_list);

@@ -4,11 +4,13 @@
 
 #include "oriel/camera.h"
 #include "oriel/log.h"
+#include "preprocess/job/exposure_list.h"
 
 // A photograph, as far as its exposure goes. Its response, gain and vignetting are those of struct orl_photo.
 struct orl_exposed {
     const char *name; // of the undistorted file in the folder of photographs
     struct orl_view view;
+    enum orl_exposure_source from;
     bool known; // true when ev is set
     bool test;  // held out
     double ev;  // log2 of exposure
@@ -21,6 +23,7 @@ struct orl_exposed {
     double off_ev;  // of the gain from the exposure, also where the gain was refused; 0: unknown
     size_t samples; // observations that the gain was fitted to
     bool refused;   // the gain was not plausible, so that of the exposure is used
+    double light;   // by orl_photo_metered: log2
 };
 
 // Sorted exposures whose steps are smaller than this form one series: half of the third of a stop

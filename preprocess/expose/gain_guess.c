@@ -13,7 +13,7 @@ static const double METERING_MUST_GAIN = 2.0 / 3;
 
 // What all guesses are made from.
 struct known {
-    const struct orl_gain_view *aligned;
+    const struct orl_exposed *aligned;
     size_t count;
     const uint32_t *shared, *own;
 };
@@ -28,14 +28,22 @@ static bool is_exposed(enum orl_gain_guess guess)
     return guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH;
 }
 
+// An exposure that is estimated from the scene tells nothing that gains do not.
+static bool is_told(const struct orl_exposed *photo)
+{
+    return photo->known && photo->from != ORL_EXPOSURE_SCENE;
+}
+
 // Weights nearby views, and views that share much of their content: automatic exposure and white
 // balance follow the content, and vignetting and gloss change slowly with position.
-static double weight(const struct orl_gain_view *a, const struct orl_gain_view *b,
+static double weight(const struct orl_exposed *a, const struct orl_exposed *b,
                      uint32_t shared, uint32_t own)
 {
-    double squared = 1e-12, common = (1.0 + shared) / (1.0 + own);
+    double squared = 1e-12, common = (1.0 + shared) / (1.0 + own), from[3], to[3];
+    orl_pose_centre(&a->view.cam_from_world, from);
+    orl_pose_centre(&b->view.cam_from_world, to);
     for (int i = 0; i < 3; i++)
-        squared += (a->eye[i] - b->eye[i]) * (a->eye[i] - b->eye[i]);
+        squared += (from[i] - to[i]) * (from[i] - to[i]);
     return common * common / squared;
 }
 
@@ -46,7 +54,7 @@ static void fit_metering(const struct known *known, size_t left_out, double mete
 {
     double n = 0, light = 0, gain = 0, lights = 0, both = 0;
     for (size_t k = 0; k < known->count; k++) {
-        const struct orl_gain_view *view = &known->aligned[k];
+        const struct orl_exposed *view = &known->aligned[k];
         if (k == left_out)
             continue;
         double stops = 0;
@@ -66,16 +74,16 @@ static void fit_metering(const struct known *known, size_t left_out, double mete
 // log2 of the gain of view `number`. If the view is one of the aligned ones, its own gain is left
 // out. metering: see fit_metering.
 static void guess_one(enum orl_gain_guess guess, const struct known *known,
-                      const struct orl_gain_view *view, size_t number, const double metering[2],
+                      const struct orl_exposed *view, size_t number, const double metering[2],
                       double gain[3])
 {
-    bool uses_ev = is_exposed(guess) && view->known;
+    bool uses_ev = is_exposed(guess) && is_told(view);
     bool uses_others = is_metered(guess) || guess == ORL_GUESS_NEIGHBOURS ||
                        guess == ORL_GUESS_BOTH;
     double slope = is_metered(guess) ? metering[0] : 0, total = 0, sum[3] = {0};
     for (size_t k = 0; uses_others && k < known->count; k++) {
-        const struct orl_gain_view *other = &known->aligned[k];
-        if (k == number || (uses_ev && !other->known))
+        const struct orl_exposed *other = &known->aligned[k];
+        if (k == number || (uses_ev && !is_told(other)))
             continue;
         double w = guess == ORL_GUESS_METER ? 1
                    : weight(view, other, known->shared[number * known->count + k],
@@ -93,7 +101,7 @@ static double error_of(enum orl_gain_guess guess, const struct known *known)
 {
     double squares = 0;
     for (size_t i = 0; i < known->count; i++) {
-        const struct orl_gain_view *view = &known->aligned[i];
+        const struct orl_exposed *view = &known->aligned[i];
         double gain[3], metering[2] = {0};
         if (is_metered(guess))
             fit_metering(known, i, metering);
@@ -109,7 +117,7 @@ static enum orl_gain_guess best_guess(const struct known *known)
 {
     bool all_known = true;
     for (size_t i = 0; i < known->count; i++)
-        all_known = all_known && known->aligned[i].known;
+        all_known = all_known && is_told(&known->aligned[i]);
     enum orl_gain_guess best = ORL_GUESS_REFERENCE;
     double reference = error_of(best, known), limit = reference;
     for (int g = ORL_GUESS_NEIGHBOURS; g <= ORL_GUESS_METER_NEAR; g++) {
@@ -127,19 +135,17 @@ static enum orl_gain_guess best_guess(const struct known *known)
     return best;
 }
 
-enum orl_gain_guess orl_gains_guess(const struct orl_gain_view *aligned, size_t aligned_count,
-                                    struct orl_gain_view *others, size_t other_count,
-                                    const uint32_t *shared, const uint32_t *own,
-                                    double metering[2])
+enum orl_gain_guess orl_gains_guess(struct orl_exposed *photos, size_t aligned_count, size_t count,
+                                    const uint32_t *shared, const uint32_t *own, double metering[2])
 {
-    const struct known known = {aligned, aligned_count, shared, own};
+    const struct known known = {photos, aligned_count, shared, own};
     enum orl_gain_guess best = best_guess(&known);
     fit_metering(&known, SIZE_MAX, metering);
-    for (size_t i = 0; i < other_count; i++) {
+    for (size_t i = aligned_count; i < count; i++) {
         double gain[3];
-        guess_one(best, &known, &others[i], aligned_count + i, metering, gain);
+        guess_one(best, &known, &photos[i], i, metering, gain);
         for (int c = 0; c < 3; c++)
-            others[i].gain[c] = (float)exp2(gain[c]);
+            photos[i].gain[c] = (float)exp2(gain[c]);
     }
     if (!is_metered(best))
         metering[0] = 0;

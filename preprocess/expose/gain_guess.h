@@ -3,15 +3,7 @@
 #define ORL_PREPROCESS_GAIN_GUESS_H
 
 #include "oriel/option_row.h"
-
-// A photograph whose gain is known or wanted.
-struct orl_gain_view {
-    double eye[3]; // camera centre in the world
-    bool known;    // true when ev is set
-    double ev;     // relative to the scene's reference
-    float gain[3]; // in: of the aligned views; out: of the other views
-    double light;  // of the aligned views: metered light at the scene's exposure, log2
-};
+#include "preprocess/expose/expose.h"
 
 // REFERENCE: 1, the scene's reference exposure. NEIGHBOURS: the gain of nearby photographs that share content.
 // EXPOSURE: as in EXIF or in a list. METER: what automatic exposure makes of the light in the picture. BOTH and
@@ -22,15 +14,13 @@ struct orl_gain_view {
     NAME(ORL_GUESS_METER, "metering") NAME(ORL_GUESS_METER_NEAR, "metering and neighbours")
 enum orl_gain_guess { ORL_GAIN_GUESSES(ORL_ENUMERATOR) };
 
-// Estimates gains of held-out views without using their pixels. It uses the guess with the least
-// error when each aligned photograph's gain is estimated from the others. shared[i * aligned_count
-// + k]: scene points common to view i and aligned photograph k, where i counts the aligned views
-// first and then the others; own[i]: scene points of view i. Returns the guess that was used.
-// The light in an other view is unknown before it is rendered: its gain holds for the aligned views'
+// Estimates the gains of held-out photographs, which follow the aligned ones, without using their pixels. It uses the
+// guess with the least error when each aligned photograph's gain is estimated from the others. shared[i *
+// aligned_count + k]: scene points common to photograph i and aligned photograph k; own[i]: scene points of
+// photograph i. Of the aligned ones `light` is metered at the scene's exposure. Returns the guess that was used.
+// The light in a held-out photograph is unknown before it is rendered: its gain holds for the aligned photographs'
 // mean light, metering[1], and grows by metering[0] stops with each stop of light.
-enum orl_gain_guess orl_gains_guess(const struct orl_gain_view *aligned, size_t aligned_count,
-                                    struct orl_gain_view *others, size_t other_count,
-                                    const uint32_t *shared, const uint32_t *own,
-                                    double metering[2]);
+enum orl_gain_guess orl_gains_guess(struct orl_exposed *photos, size_t aligned_count, size_t count,
+                                    const uint32_t *shared, const uint32_t *own, double metering[2]);
 
 #endif

@@ -456,29 +456,33 @@ static void samples_show_what_photographs_have_in_common(void **state)
 static void metered_exposures_are_no_bracket(void **state)
 {
     (void)state;
-    const double ev[6] = {-2, 0, 2, -2, 0, 2};
-    assert_false(orl_exposures_are_metered(ev, (double[]){-3, -2, -1, -5, -4, -2.5}, 6));
-    assert_true(orl_exposures_are_metered(ev, (double[]){-2.3, -2, -2.1, -2, -2.2, -1.9}, 6));
+    static const double light[2][6] = {{-3, -2, -1, -5, -4, -2.5}, {-2.3, -2, -2.1, -2, -2.2, -1.9}};
+    for (int metered = 0; metered < 2; metered++) {
+        struct orl_exposed photos[6];
+        for (int i = 0; i < 6; i++)
+            photos[i] = (struct orl_exposed){.ev = 2 * (i % 3 - 1), .light = light[metered][i]};
+        assert_int_equal(orl_exposures_are_metered(photos, 6), metered);
+    }
 }
 
 // The light before the lens, which its borders darken.
 static void light_is_metered_without_vignetting(void **state)
 {
     (void)state;
-    const struct orl_camera camera = {SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2};
-    const float gain[3] = {1, 1, 1}, vignette[3] = {-0.6f, 0, 0};
+    struct orl_exposed photo = {.name = "wall.png", .vignette = {-0.6f, 0, 0},
+                                .view.camera = {SIDE, SIDE, 32, 32, SIDE / 2, SIDE / 2}};
+    const float gain[3] = {1, 1, 1};
     struct orl_image image;
     char *dir, *path;
-    double light;
     assert_int_equal(test_file_make("wall.png", &dir, &path), 0);
     assert_int_equal(orl_image_init(NULL, &image, SIDE, SIDE, 3, ORL_PIXEL_U8), ORL_OK);
     for (int i = 0; i < SIDE * SIDE; i++)
         memset(&image.u8[3 * i],
-               (int)lrintf(255 * orl_srgb_encode(0.25f * orl_illumination(vignette, &camera, i % SIDE + 0.5,
-                                                                          (int)(i / SIDE) + 0.5))), 3);
+               (int)lrintf(255 * orl_srgb_encode(0.25f * orl_illumination(photo.vignette, &photo.view.camera,
+                                                                          i % SIDE + 0.5, (int)(i / SIDE) + 0.5))), 3);
     assert_int_equal(orl_png_write(NULL, path, &image), ORL_OK);
-    assert_int_equal(orl_photo_metered(NULL, path, &camera, gain, vignette, &light), ORL_OK);
-    assert_float_equal(light, -2, 0.02);
+    assert_int_equal(orl_photo_metered(NULL, dir, &photo, gain), ORL_OK);
+    assert_float_equal(photo.light, -2, 0.02);
     orl_image_finish(&image);
     test_dir_remove(dir);
     free(path);
@@ -487,12 +491,12 @@ static void light_is_metered_without_vignetting(void **state)
 // --- guesses ---
 
 // Views in a row, each sharing points with its neighbours.
-static void make_row(struct orl_gain_view views[7], uint32_t shared[7 * 6], uint32_t own[7])
+static void make_row(struct orl_exposed views[7], uint32_t shared[7 * 6], uint32_t own[7])
 {
     memset(views, 0, 7 * sizeof *views);
     for (int i = 0; i < 7; i++) {
         double at = i < 6 ? i : 2.5; // the last one is to be guessed
-        views[i].eye[0] = at;
+        views[i].view.cam_from_world = (struct orl_pose){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {-at, 0, 0}};
         own[i] = 100;
         for (int k = 0; k < 6; k++)
             shared[6 * i + k] = (uint32_t)fmax(0, 100 - 30 * fabs(at - k));
@@ -502,7 +506,7 @@ static void make_row(struct orl_gain_view views[7], uint32_t shared[7 * 6], uint
 static void guesses_follow_what_predicts(void **state)
 {
     (void)state;
-    struct orl_gain_view views[7];
+    struct orl_exposed views[7];
     uint32_t shared[7 * 6], own[7];
     double metering[2];
     // A trend along the row: neighbours tell.
@@ -510,25 +514,25 @@ static void guesses_follow_what_predicts(void **state)
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] = (float)exp2(0.3 * (i - 2.5));
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_NEIGHBOURS);
+    assert_int_equal(orl_gains_guess(views, 6, 7, shared, own, metering), ORL_GUESS_NEIGHBOURS);
     assert_true(fabs(log2((double)views[6].gain[1])) < 0.05);
     // By the square of what is in common over that of the distance.
     double sum = 0, weights = 0;
-    views[6].eye[0] = 1.2;
+    views[6].view.cam_from_world.t[0] = -1.2;
     for (int k = 0; k < 6; k++) {
         shared[6 * 6 + k] = (uint32_t)(20 + 10 * k);
         double weight = pow((21 + 10 * k) / 101.0 / (1.2 - k), 2);
         sum += weight * 0.3 * (k - 2.5);
         weights += weight;
     }
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_NEIGHBOURS);
+    assert_int_equal(orl_gains_guess(views, 6, 7, shared, own, metering), ORL_GUESS_NEIGHBOURS);
     assert_float_equal(log2((double)views[6].gain[1]), sum / weights, 1e-5);
     // Without rhyme or reason: the reference.
     const float odd[6] = {1.5f, 0.6f, 1.6f, 0.5f, 1.4f, 0.7f};
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] = odd[i];
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_REFERENCE);
+    assert_int_equal(orl_gains_guess(views, 6, 7, shared, own, metering), ORL_GUESS_REFERENCE);
     assert_float_equal(views[6].gain[0], 1, 0);
     // EXIF tells them.
     for (int i = 0; i < 6; i++) {
@@ -537,7 +541,7 @@ static void guesses_follow_what_predicts(void **state)
     }
     views[6].known = true;
     views[6].ev = 1.5;
-    enum orl_gain_guess guess = orl_gains_guess(views, 6, views + 6, 1, shared, own, metering);
+    enum orl_gain_guess guess = orl_gains_guess(views, 6, 7, shared, own, metering);
     assert_true(guess == ORL_GUESS_EXPOSURE || guess == ORL_GUESS_BOTH);
     assert_float_equal(views[6].gain[2], exp2(-1.5), 1e-5);
     assert_float_equal(metering[0], 0, 0);
@@ -549,7 +553,7 @@ static void guesses_follow_automatic_exposure(void **state)
 {
     (void)state;
     static const double light[6] = {-3, -1.2, -2.9, -0.8, -3.1, -1};
-    struct orl_gain_view views[7];
+    struct orl_exposed views[7];
     uint32_t shared[7 * 6], own[7];
     double metering[2], mean = -2;
     make_row(views, shared, own);
@@ -558,7 +562,7 @@ static void guesses_follow_automatic_exposure(void **state)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] = (float)exp2(0.8 * (light[i] - mean) + 0.1 * c);
     }
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering),
+    assert_int_equal(orl_gains_guess(views, 6, 7, shared, own, metering),
                      ORL_GUESS_METER);
     assert_float_equal(metering[0], 0.8, 1e-5);
     assert_float_equal(metering[1], mean, 1e-9);
@@ -567,7 +571,7 @@ static void guesses_follow_automatic_exposure(void **state)
     for (int i = 0; i < 6; i++) // no camera evens out more than all
         for (int c = 0; c < 3; c++)
             views[i].gain[c] = (float)exp2(1.2 * (light[i] - mean));
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering), ORL_GUESS_METER);
+    assert_int_equal(orl_gains_guess(views, 6, 7, shared, own, metering), ORL_GUESS_METER);
     assert_float_equal(metering[0], 1, 0);
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
@@ -575,7 +579,7 @@ static void guesses_follow_automatic_exposure(void **state)
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 3; c++)
             views[i].gain[c] *= (float)exp2(0.2 * (i - 2.5));
-    assert_int_equal(orl_gains_guess(views, 6, views + 6, 1, shared, own, metering),
+    assert_int_equal(orl_gains_guess(views, 6, 7, shared, own, metering),
                      ORL_GUESS_METER_NEAR);
     assert_true(fabs(log2((double)views[6].gain[0])) < 0.05);
 }
