@@ -612,7 +612,8 @@ class Phone(unittest.TestCase):
             browser.js("document.getElementById('tool-help').click()")
             self.assertEqual(browser.js("""
                 const {text} = await import("./js/strings.js"), rows = [...document.querySelectorAll("#help dt")];
-                return rows.map(row => row.textContent).join() === text.touch.map(([what]) => what).join();"""), True)
+                return rows.map(row => row.textContent.toLowerCase()).join() ===
+                    text.help.map(([, , fingers]) => fingers).filter(Boolean).join();"""), True)
             self.assertEqual(browser.errors(), [])
         finally:
             browser.close()

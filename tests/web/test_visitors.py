@@ -175,7 +175,7 @@ class Page(Visitors):
             # What a language lacks is English, and nothing that English lacks is translated.
             self.assertEqual(self.js("""
                 return import("./js/strings.js").then(m => [typeof m.text.benchmark, m.text.help.length]);"""),
-                ["string", 23])
+                ["string", 24])
         keys = self.js(HELP_KEYS) # of what there is: annotations to go through, but neither lengths nor a maker
         self.assertEqual([key in keys for key in ("G", "U", "N, O", "T, M, I")], [True, False, False, True])
 

@@ -269,9 +269,12 @@ export function buildHelp(has)
 {
     const dialog = byId("help"), list = make("dl"), title = make("h2", {textContent: text.helpTitle, tabIndex: -1});
     const fingersAlone = matchMedia("(any-pointer: coarse)").matches && !matchMedia("(any-pointer: fine)").matches;
-    const works = keys => !/^[A-Z](, [A-Z])*$/.test(keys) || keys.toLowerCase().split(", ").some(has);
-    for (const [keys, what] of fingersAlone ? text.touch : text.help.filter(([keys]) => works(keys)))
-        list.append(make("dt", {textContent: keys}), make("dd", {textContent: what}));
+    const works = keys => keys && (!/^[A-Z](, [A-Z])*$/.test(keys) || keys.toLowerCase().split(", ").some(has));
+    for (const [keys, what, fingers] of text.help.filter(row => fingersAlone ? row[2] : works(row[0]))) {
+        const ways = fingersAlone ? fingers[0].toUpperCase() + fingers.slice(1)
+                                  : fingers ? `${keys}, ${text.or} ${fingers}` : keys;
+        list.append(make("dt", {textContent: ways}), make("dd", {textContent: what}));
+    }
     dialog.setAttribute("aria-label", text.helpTitle);
     dialog.append(title, list, make("p", {textContent: text.helpShare}), button(text.close, () => dialog.close()));
     return {
