@@ -17,8 +17,8 @@ import {Ruler} from "./ruler.js";
 import {PathEditor} from "./path.js";
 import {makePhotos} from "./photos.js";
 import {language, text} from "./strings.js";
-import {buildHelp, byId, Compare, make, Panel, save, showHint, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
-import {cameraOf, frameHeight, levelAxes, photoView, viewFromText, viewToText} from "./view.js";
+import {buildHelp, byId, Compare, fit, make, Panel, save, showHint, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
+import {cameraOf, levelAxes, photoView, viewFromText, viewToText} from "./view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
 const FRAME_LONG = 38, FRAME_SHORT = 20;  // milliseconds: fewer pixels, more pixels. Screens show 60 frames a second.
@@ -106,7 +106,7 @@ class Walk {
 
     resized()
     {
-        this.placePoster();
+        fit(byId("poster"), this.navigator.home.frame, 1 / POSTER_SHARE);
         this.tools.fit();
         this.change(() => {});
     }
@@ -612,13 +612,6 @@ class Walk {
     {
         const start = this.navigator.view === this.navigator.home, gone = byId("poster").classList.contains("away");
         return gone || !start || this.picture.presentable;
-    }
-
-    placePoster()
-    {
-        const poster = byId("poster"), frame = this.navigator.home.frame;
-        const h = frameHeight(frame, window.innerWidth, window.innerHeight);
-        Object.assign(poster.style, {height: `${h}px`, width: `${h / POSTER_SHARE}px`});
     }
 }
 

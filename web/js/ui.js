@@ -201,7 +201,14 @@ export class Thumbs {
     }
 }
 
-// --- comparison ---
+// --- pictures over the picture ---
+
+// To where the window shows a frame.
+export function fit(image, frame, aspect)
+{
+    const height = frameHeight(frame, window.innerWidth, window.innerHeight);
+    Object.assign(image.style, {height: `${height}px`, width: `${height * aspect}px`});
+}
 
 const srgbEncode = x => x > 0.0031308 ? 1.055 * x ** (1 / 2.4) - 0.055 : 12.92 * x;
 
@@ -213,10 +220,10 @@ export class Compare {
         Object.assign(this, {files, radiance, on: false, photo: null});
         this.element = byId("compare");
         this.image = this.element.querySelector("img");
-        this.slider = this.element.querySelector("input");
-        this.slider.setAttribute("aria-label", text.compareSlider);
+        const slider = this.element.querySelector("input");
+        slider.setAttribute("aria-label", text.compareSlider);
+        slider.addEventListener("input", () => this.element.style.setProperty("--share", `${slider.value}vw`));
         byId("left-side").textContent = text.sides.own;
-        this.slider.addEventListener("input", () => this.split());
         if (radiance) {
             this.image.style.filter = "url(#shown)";
             this.setExposure(0);
@@ -234,14 +241,6 @@ export class Compare {
             channel.setAttribute("tableValues", table.join(" "));
     }
 
-    split()
-    {
-        const share = Number(this.slider.value), box = this.image.getBoundingClientRect();
-        const x = window.innerWidth * share / 100 - box.left;
-        this.element.style.setProperty("--share", `${share}%`);
-        this.image.style.clipPath = `inset(0 0 0 ${x}px)`;
-    }
-
     // photo: that the viewer is at; null: none
     async update(photo, view)
     {
@@ -254,11 +253,7 @@ export class Compare {
             byId("right-side").textContent = photo.held_out ? text.sides.heldOut : text.sides.photograph;
             this.image.src = await this.files.address(photo.picture.file);
         }
-        const width = window.innerWidth, height = window.innerHeight;
-        const h = frameHeight(view.frame, width, height), w = h * view.frame.aspect;
-        Object.assign(this.image.style, {left: `${(width - w) / 2}px`, top: `${(height - h) / 2}px`,
-                                         width: `${w}px`, height: `${h}px`});
-        this.split();
+        fit(this.image, view.frame, view.frame.aspect);
     }
 }
 
