@@ -70,7 +70,7 @@ class Browser:
         self.settle(seconds)
 
     def settle(self, seconds=WAIT_S):
-        self.wait("return !!window.oriel && oriel.settled", seconds)
+        self.wait(SETTLED, seconds)
 
     def wait(self, condition, seconds=WAIT_S):
         end = time.monotonic() + seconds
@@ -163,6 +163,14 @@ class Browser:
 
 
 HINT = "return document.getElementById('hint') ? document.getElementById('hint').textContent : ''"
+
+# Nothing is on its way any more that would change the picture, or the album's photograph.
+SETTLED = """
+const {picture, refined, running, image} = window.oriel || {};
+return picture ? refined && !running && picture.complete
+    : !!image && image.complete && image.naturalWidth > 0 &&
+      image.alt === document.getElementById('place').textContent;
+"""
 
 # Counts events of one kind from now on. The window hears of them after everything in the page.
 COUNT_EVENTS = """

@@ -62,7 +62,7 @@ class TimeSteps(unittest.TestCase):
         browser = Browser(640, 480)
         self.addCleanup(browser.close)
         browser.open(self.walk.address)
-        browser.wait("return oriel.settled")
+        browser.settle()
         self.assertFalse(browser.js("return document.getElementById('time-steps').hidden"))
         play = "document.querySelector('#time-steps button').click()"
         browser.js("window.seen = new Set(); const {timeSteps} = oriel, tell = timeSteps.tell.bind(timeSteps); "
@@ -72,7 +72,7 @@ class TimeSteps(unittest.TestCase):
         browser.js("oriel.navigator.goTo(oriel.photos[1]); seen.clear(); oriel.wake()")
         browser.wait("return seen.size === 3 && oriel.navigator.at === oriel.photos[1]")
         browser.js(play + "; oriel.timeSteps.show(2)")
-        browser.wait("return oriel.settled")
+        browser.settle()
         self.assertEqual(browser.js("return document.querySelector('#time-steps output').textContent"), "3 / 3")
         self.assertFalse(browser.js("return oriel.timeSteps.playing"))
         self.assertEqual(browser.errors(), [])

@@ -14,7 +14,7 @@ import tempfile
 import threading
 import unittest
 
-from browser import Browser, CAPTURE, QuietHandler, Server, WAIT_S
+from browser import Browser, CAPTURE, QuietHandler, Server, SETTLED, WAIT_S
 from client import Walk as Program
 import firefox
 
@@ -598,7 +598,7 @@ class Firefox(unittest.TestCase):
 
     def open(self, address):
         self.browser.open(address)
-        self.browser.wait("return !!window.oriel && oriel.settled")
+        self.browser.wait(SETTLED)
 
     def test_live(self):
         walk = Program(ORIEL, SCENE)
@@ -607,7 +607,8 @@ class Firefox(unittest.TestCase):
         self.assertEqual(self.browser.js("return document.getElementById('poster').className"), "away")
         frame, name = self.browser.js("return [oriel.picture.shown.number, oriel.navigator.at.name]")
         self.browser.js("oriel.navigator.calm = true; document.getElementById('tool-next').click()")
-        self.browser.wait(f"return oriel.picture.shown.number > {frame} && oriel.settled")
+        self.browser.wait(f"return oriel.picture.shown.number > {frame}")
+        self.browser.wait(SETTLED)
         self.assertNotEqual(self.browser.js("return oriel.navigator.at.name"), name)
 
     def test_picture_or_album(self):

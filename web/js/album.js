@@ -64,8 +64,5 @@ export class Album {
         const address = await this.files.address(photo.picture.file);
         if (this.photo === photo)
             Object.assign(this.image, {src: address, alt: said});
-        this.shown = photo;
     }
-
-    get settled() { return this.shown === this.photo && this.image.complete && this.image.naturalWidth > 0; }
 }

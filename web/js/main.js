@@ -578,9 +578,6 @@ class Walk {
         this.scale = next;
     }
 
-    // Nothing is on its way any more that would change the picture.
-    get settled() { return this.refined && !this.running && this.picture.complete; }
-
     // --- what is said about it ---
 
     showState()
