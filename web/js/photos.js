@@ -127,7 +127,7 @@ export class PhotoStore {
     // Both pictures are decoded: ImageBitmaps, closed here.
     add(photo, picture, depth)
     {
-        const slot = this.freeSlot();
+        const slot = photo.slot < 0 ? this.freeSlot() : photo.slot;
         this.writeColor(picture, slot);
         this.writeDepth(photo, depth, slot);
         picture.close();
@@ -170,12 +170,8 @@ export class PhotoStore {
     replace(photo, entry, picture, depth)
     {
         photo.depth = entry.depth;
-        if (photo.slot < 0 && this.ready.length < this.slots)
-            photo.slot = this.freeSlot();
-        if (photo.slot >= 0) {
-            this.writeColor(picture, photo.slot);
-            this.writeDepth(photo, depth, photo.slot);
-        }
+        if (photo.slot >= 0 || this.ready.length < this.slots)
+            this.add(photo, picture, depth);
     }
 
     // Mip levels are made in a texture of its own: of the array they would be made for all layers. Those of sRGB are
