@@ -25,7 +25,6 @@ export async function benchmark(walk, seconds = SECONDS)
             last = last || now;
             const passed = clamp((now - began) / (1000 * seconds), 0, 1);
             navigator.setView(keys.length > 1 ? viewAt(keys, passed) : keys[0]);
-            walk.wake();
             if (passed < 1)
                 requestAnimationFrame(step);
             else
@@ -35,7 +34,6 @@ export async function benchmark(walk, seconds = SECONDS)
     });
     walk.onFrame = null;
     navigator.setView(view, at);
-    walk.wake();
     return {
         title: walk.manifest.title, made_by: walk.manifest.made_by, browser: window.navigator.userAgent,
         drawn_by: walk.picture.remote ? "server" : "browser", window: [window.innerWidth, window.innerHeight],

@@ -176,7 +176,6 @@ export class Input {
             this.slide((now[0] - before[0]) / 2, (now[1] - before[1]) / 2, apart(now) - apart(before));
         }
         this.pointers.set(event.pointerId, now);
-        this.wake();
     }
 
     // The scene follows the fingers: pixels sideways, along the picture, and apart. Upwards moves
@@ -199,6 +198,5 @@ export class Input {
             this.navigator.zoom(Math.exp(-pixels / 300));
         else
             this.navigator.step(0, 0, -pixels * WHEEL_STEP);
-        this.wake();
     }
 }

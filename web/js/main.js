@@ -60,6 +60,7 @@ class Walk {
     begin(picture)
     {
         this.picture = picture;
+        this.navigator.wake = () => this.wake();
         this.server = picture.remote ? picture : null;
         this.own = picture.remote ? null : picture; // drawn by this browser
         this.timeSteps = this.manifest.time_steps > 1 && !this.manifest.follows && (picture.remote || picture.moving)
@@ -151,18 +152,18 @@ class Walk {
 
     buildTools()
     {
-        const nav = this.navigator;
+        const nav = this.navigator, {tour, notes = []} = this.manifest.walk;
         const toggle = id => () => this.toggle(id);
         const shown = id => () => !byId(id).hidden;
         const edits = Boolean(this.manifest.edits);
-        const mode = name => ({run: () => this.act(() => nav.setMode(name)), pressed: () => nav.mode === name});
-        this.thumbs = new Thumbs(this.photos, this.files, photo => this.act(() => nav.goTo(photo)));
+        const mode = name => ({run: () => nav.setMode(name), pressed: () => nav.mode === name});
+        this.thumbs = new Thumbs(this.photos, this.files, photo => nav.goTo(photo));
         const actions = {
-            home: {key: "h", run: () => this.act(() => nav.goHome())},
+            home: {key: "h", run: () => nav.goHome()},
             // Where Dvorak has comma and full stop, there are two of the keys that move.
-            previous: {key: ",", also: "pageup", run: () => this.act(() => nav.browse(-1))},
-            next: {key: ".", also: "pagedown", run: () => this.act(() => nav.browse(1))},
-            snap: {key: "p", run: () => this.act(() => nav.snap())},
+            previous: {key: ",", also: "pageup", run: () => nav.browse(-1)},
+            next: {key: ".", also: "pagedown", run: () => nav.browse(1)},
+            snap: {key: "p", run: () => nav.snap()},
             ...Object.fromEntries(nav.modes.map((name, i) => [name, {key: String(i + 1), ...mode(name)}])),
             layer: {key: "l", run: () => this.setLayer((this.layer + 1) % this.picture.layers.length)},
             compare: {key: "c", run: () => this.toggleCompare(), pressed: () => this.compare.on},
@@ -178,12 +179,11 @@ class Walk {
                 toggle("panel")();
             }},
             path: {key: "k", run: toggle("path"), pressed: shown("path")},
-            record: {key: "r", run: () => this.act(() => {
+            record: {key: "r", run: () => {
                 this.path.add();
                 this.reveal("path");
-            })},
-            ...(this.hasTour ? {tour: {key: "g", run: () => this.act(() => this.notes.toggleTour()),
-                                       pressed: () => this.notes.touring}} : {}),
+            }},
+            ...(tour || notes.length > 1 ? {tour: {key: "g", run: () => this.notes.toggleTour(), pressed: () => this.notes.touring}} : {}),
             ...(this.manifest.walk.unit_m || edits ? {ruler: {key: "u", run: toggle("ruler"), pressed: shown("ruler")}} : {}),
             ...(edits ? {maker: {key: "n", run: toggle("maker"), pressed: shown("maker")}} : {}),
             ...(this.manifest.methods ? {method: {key: "o", pressed: shown("method"), run: () => {
@@ -195,7 +195,7 @@ class Walk {
             help: {key: "?", run: () => help.show()},
         };
         const help = buildHelp(key => Object.values(actions).some(action => action.key === key));
-        this.tools = new Tools(actions);
+        this.tools = new Tools(actions, () => this.wake());
         this.compare = new Compare(this.files, this.manifest.radiance);
         this.panel = new Panel({layers: this.picture.layers, layer: this.layer, tones: this.manifest.tones ||
                                     this.picture.tones.map(name => ({name, description: text.tones[name]})),
@@ -217,7 +217,7 @@ class Walk {
             save: edits ? unit => this.notes.change({unit_m: unit}) : null,
         });
         byId("attribution").textContent = this.manifest.walk.attribution || "";
-        this.map = new Map2d(nav, this.picture, photo => this.act(() => nav.goTo(photo)));
+        this.map = new Map2d(nav, this.picture, photo => nav.goTo(photo));
         this.input = new Input(this.canvas, nav, {
             focal: () => this.windowCamera(1).fx, wake: () => this.wake(),
             actions: new Map([["escape", () => this.closeTop()],
@@ -226,13 +226,6 @@ class Walk {
             onTap: (x, y) => (this.ruler.on ? this.ruler : this.notes).tap(x, y), onTwice: (x, y) => this.goThere(x, y),
         });
         document.addEventListener("fullscreenchange", () => this.wake());
-    }
-
-    // The maker's path, or annotations to go through.
-    get hasTour()
-    {
-        const {tour, notes = []} = this.manifest.walk;
-        return Boolean(tour) || notes.length > 1;
     }
 
     // --- panels ---
@@ -287,7 +280,7 @@ class Walk {
     {
         const point = await this.pick(x, y);
         if (point)
-            this.act(() => this.navigator.approach(point));
+            this.navigator.approach(point);
         else
             showHint(text.nothingThere);
     }
@@ -295,7 +288,7 @@ class Walk {
     makePath(edits)
     {
         this.path = new PathEditor(this.navigator, {
-            wake: () => this.wake(), name: () => this.manifest.title,
+            name: () => this.manifest.title,
             tour: this.manifest.walk.tour, onTour: view => this.notes.pass(view),
             keep: edits ? tour => this.notes.change({tour}) : null,
             render: edits ? (path, format) => this.server.render(path, format) : null,
@@ -395,12 +388,6 @@ class Walk {
         this.panel.bench.disabled = false;
     }
 
-    act(what)
-    {
-        what();
-        this.wake();
-    }
-
     setLayer(layer)
     {
         this.layer = layer;
@@ -445,7 +432,6 @@ class Walk {
             nav.setView(photoView(photo), photo);
         else if (view)
             nav.setView(view);
-        this.wake();
     }
 
     // By number from 1, or by name.

@@ -30,6 +30,7 @@ export class Navigator {
     {
         const {ground, distance: typical} = manifest;
         Object.assign(this, {photos, ground, calm, pivotAt, distance: typical, up: normalize(manifest.up)});
+        this.wake = () => {}; // told that the view changes, or will
         const first = photoView(photos[manifest.start]), settings = manifest.walk;
         const start = settings.start ? viewFromSaved(settings.start, first) : null;
         this.home = start || first;
@@ -50,10 +51,12 @@ export class Navigator {
         this.view = view;
         this.at = photo;
         this.changed = true;
+        this.wake();
     }
 
     setMode(mode)
     {
+        this.wake();
         this.mode = mode;
         this.pivot = mode === "orbit" ? this.pivotAt() ||
             add(this.view.eye, scale(forwardOf(this.view), this.distance)) : null;
@@ -204,6 +207,7 @@ export class Navigator {
         this.flight = this.calm ? null : {from: this.view, to: view, photo, seconds, passed: 0};
         if (this.calm)
             this.setView(view, photo);
+        this.wake();
         if (this.mode === "orbit") // another place has another middle
             this.setMode(this.modes.find(mode => mode !== "orbit") || "orbit");
     }

@@ -10,10 +10,10 @@ export class PathEditor {
     // tour: the maker's path, undefined: none; onTour(view): while a path plays, null at its end
     // render(path, format): asks the server for it, keep(path): makes it the visitors' tour, undefined:
     // none; null: there is no server
-    constructor(navigator, {wake, name, tour, onTour, render, keep})
+    constructor(navigator, {name, tour, onTour, render, keep})
     {
         const t = text.path;
-        Object.assign(this, {navigator, wake, onTour, plays: false});
+        Object.assign(this, {navigator, onTour, plays: false});
         this.keys = [];         // views, some with seconds to the next one
         this.element = byId("path");
         this.element.setAttribute("aria-label", text.path.title);
@@ -79,7 +79,6 @@ export class PathEditor {
             this.said.textContent = text.path.notLoaded(name, error.message);
         }
         this.fill();
-        this.wake();
     }
 
     addRendering(render)
@@ -106,17 +105,14 @@ export class PathEditor {
 
     add()
     {
-        this.said.textContent = ""; // of a path that was another one
-        this.keys.push(this.navigator.view);
-        this.fill();
+        this.change(keys => keys.push(this.navigator.view));
     }
 
     change(what)
     {
-        this.said.textContent = "";
+        this.said.textContent = ""; // of a path that was another one
         what(this.keys);
         this.fill();
-        this.wake();
     }
 
     fill()
@@ -144,10 +140,7 @@ export class PathEditor {
         const small = (sign, label, run, disabled = false) => button(sign, run, {label, title: label, disabled});
         const swap = by => () => this.change(keys => [keys[i], keys[i + by]] = [keys[i + by], keys[i]]);
         return make("li", {className: "row"},
-                    button(t.key(i + 1), () => {
-                        this.navigator.flyTo(this.keys[i]);
-                        this.wake();
-                    }), fov, seconds,
+                    button(t.key(i + 1), () => this.navigator.flyTo(this.keys[i])), fov, seconds,
                     small("⟲", t.replace(i + 1), () => this.change(keys => {
                         keys[i] = {...this.navigator.view, seconds: key.seconds};
                     })),
@@ -164,12 +157,11 @@ export class PathEditor {
         this.navigator.setView(view);
         if (this.plays)
             this.onTour(view);
-        this.wake();
     }
 
     stopPlaying()
     {
-        this.turn++;
+        cancelAnimationFrame(this.next);
         this.plays = false;
         this.playing.textContent = text.path.play;
         this.onTour(null);
@@ -184,21 +176,19 @@ export class PathEditor {
         }
         this.plays = true;
         this.playing.textContent = text.path.pause;
-        const start = performance.now(), ms = 1000 * this.duration, from = Number(this.scrubber.value), turn = this.turn = (this.turn || 0) + 1;
+        const start = performance.now(), ms = 1000 * this.duration, from = Number(this.scrubber.value);
         const step = now => {
             const share = clamp((now - start) / ms + (from < 1 ? from : 0), 0, 1);
-            if (turn !== this.turn)
-                return;
             const goes = this.keys.length > 1 && !this.navigator.flying;
             if (goes) {
                 this.scrubber.value = share;
                 this.show(share);
             }
             if (goes && share < 1)
-                requestAnimationFrame(step);
+                this.next = requestAnimationFrame(step);
             else
                 this.stopPlaying();
         };
-        requestAnimationFrame(step);
+        this.next = requestAnimationFrame(step);
     }
 }

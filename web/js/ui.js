@@ -45,13 +45,13 @@ function icon(name)
 
 const BUTTON_MIN = 28, BUTTON_MAX = 42; // CSS pixels
 
-// actions: {id: {run, key, pressed}}; pressed() for those that are on or off.
+// actions: {id: {run, key, pressed}}; pressed() for those that are on or off. wake(): one has been run
 export class Tools {
-    constructor(actions)
+    constructor(actions, wake)
     {
         const bar = byId("tools");
         bar.setAttribute("aria-label", text.toolbar);
-        this.toggles = [];
+        Object.assign(this, {wake, toggles: []});
         for (const [id, action] of Object.entries(actions))
             this.add(id, action);
     }
@@ -59,8 +59,11 @@ export class Tools {
     add(id, action)
     {
         const label = `${text.actions[id]} (${action.key.toUpperCase()})`;
-        const more = {type: "button", title: label, label, id: `tool-${id}`, onclick: action.run};
-        const button = make("button", more, icon(id));
+        const onclick = () => {
+            action.run();
+            this.wake();
+        };
+        const button = make("button", {type: "button", title: label, label, id: `tool-${id}`, onclick}, icon(id));
         byId("tools").append(button);
         if (action.pressed)
             this.toggles.push([button, action.pressed]);
