@@ -88,8 +88,8 @@ enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering, c
     struct run run = {.rendering = rendering};
     struct orl_tone_params tone;
     const char *format = orl_json_text(message, "format");
-    enum orl_result result = orl_walk_tone_read(message, &tone) ? name_files(&run, format)
-                                                                : ORL_ERR_FORMAT;
+    (void)orl_walk_tone_read(message, &tone); // which the message has been checked for
+    enum orl_result result = name_files(&run, format);
     ORL_THEN(result, read_path(&run, json_object_get(message, "render")));
     ORL_THEN(result, write_frames(&run, format, &tone));
     if (result == ORL_OK)

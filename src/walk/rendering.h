@@ -21,7 +21,7 @@ struct walk_rendering {
 // Is this a message {"render": keyframes, "format": "mp4" | "png" | "exr"}, with "ev" and "tone" as
 // of frames, which EXR files do without?
 bool orl_walk_rendering_asked(const json_t *message);
-// Renders it into files of the next free number: NNN.path.json, the keyframes, and NNN.mp4 or a
+// Renders what such a message asks for into files of the next free number: NNN.path.json, the keyframes, and NNN.mp4 or a
 // folder NNN of pictures. ORL_ERR_FORMAT: the path is not valid, and nothing is left of it.
 enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering,
                                        const json_t *message) ORL_CHECK_RESULT;
