@@ -194,25 +194,6 @@ static enum orl_result draw(struct walk_renderer *walk, const struct walk_reques
 
 enum { PASSES_MAX = 32 };
 
-static json_t *passes_json(struct orl_gpu *gpu)
-{
-    struct orl_pass_time times[PASSES_MAX];
-    size_t count = orl_gpu_take_times(gpu, times, PASSES_MAX);
-    json_t *passes = json_array();
-    for (size_t i = 0; i < count && i < PASSES_MAX; i++)
-        json_array_append_new(passes, json_pack("[s,f]", times[i].name, times[i].ms));
-    return passes;
-}
-
-static json_t *memory_json(const struct orl_gpu *gpu)
-{
-    json_t *memory = json_object();
-    for (int i = 0; i < ORL_OWNER_COUNT; i++)
-        json_object_set_new(memory, orl_owner_names[i],
-                            json_integer((json_int_t)orl_gpu_owner_bytes(gpu, (enum orl_owner)i)));
-    return memory;
-}
-
 static void start_measuring(const struct walk_renderer *walk)
 {
     (void)orl_gpu_take_times(walk->gpu, NULL, 0); // forgets what was measured before
@@ -221,10 +202,17 @@ static void start_measuring(const struct walk_renderer *walk)
 
 static json_t *finish_measuring(const struct walk_renderer *walk, double draw_s, double encode_s)
 {
-    json_t *passes = passes_json(walk->gpu);
+    struct orl_pass_time times[PASSES_MAX];
+    size_t count = orl_gpu_take_times(walk->gpu, times, PASSES_MAX);
+    json_t *passes = json_array(), *memory = json_object();
     orl_gpu_time_passes(walk->gpu, false);
+    for (size_t i = 0; i < count && i < PASSES_MAX; i++)
+        json_array_append_new(passes, json_pack("[s,f]", times[i].name, times[i].ms));
+    for (int i = 0; i < ORL_OWNER_COUNT; i++)
+        json_object_set_new(memory, orl_owner_names[i],
+                            json_integer((json_int_t)orl_gpu_owner_bytes(walk->gpu, (enum orl_owner)i)));
     return json_pack("{s:f, s:f, s:o, s:o}", "draw_ms", 1e3 * draw_s, "encode_ms", 1e3 * encode_s,
-                     "passes", passes, "memory", memory_json(walk->gpu));
+                     "passes", passes, "memory", memory);
 }
 
 // --- frames ---
