@@ -1,6 +1,8 @@
 // The page of a site: the files of web/, and the shader functions that the page shares with the
 // renderer. In web/index.html, names in double braces mark what differs between a folder and a
 // single file.
+#include <errno.h>
+#include <fts.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -250,34 +252,26 @@ enum orl_result orl_site_page(struct site *site)
 
 // --- the site as one file ---
 
-// As orl_site_files, of what is below `folder` of the site.
-static enum orl_result list_files(const struct orl_log *log, const char *dir, const char *folder,
-                                  bool data, struct orl_names *paths)
-{
-    struct orl_names names = {0};
-    char *here = orl_path_join(log, dir, folder);
-    enum orl_result result = here ? orl_dir_list(log, here, &names) : ORL_ERR_MEMORY;
-    for (size_t i = 0; i < names.count && result == ORL_OK; i++) {
-        char *path = orl_format(log, "%s%s%s", folder, *folder ? "/" : "", names.items[i]);
-        char *full = path ? orl_path_join(log, dir, path) : NULL;
-        if (!full)
-            result = ORL_ERR_MEMORY;
-        else if (orl_path_is_dir(full))
-            result = list_files(log, dir, path, data, paths);
-        else if (!data || !*web_file(path)) // data is what the page requests by name
-            result = orl_names_add(log, paths, path);
-        free(full);
-        free(path);
-    }
-    orl_names_finish(&names);
-    free(here);
-    return result;
-}
-
 enum orl_result orl_site_files(const struct orl_log *log, const char *dir, bool data,
                                struct orl_names *paths)
 {
-    return list_files(log, dir, "", data, paths);
+    char *roots[] = {(char *)dir, NULL};
+    FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_NOCHDIR, NULL);
+    enum orl_result result = tree ? ORL_OK : ORL_ERR_MEMORY;
+    for (FTSENT *entry; result == ORL_OK && (entry = fts_read(tree));) {
+        const char *path = entry->fts_path + strlen(dir);
+        path += *path == '/';
+        if (entry->fts_errno)
+            result = orl_fail(log, ORL_ERR_IO, "%s: %s", entry->fts_path, strerror(entry->fts_errno));
+        else if (entry->fts_info == FTS_F && (!data || !*web_file(path))) // data is what the page requests by name
+            result = orl_names_add(log, paths, path);
+    }
+    if (result == ORL_OK && errno != 0) // of fts_read
+        result = orl_file_failed(log, dir);
+    if (tree)
+        fts_close(tree);
+    orl_names_sort(paths);
+    return result;
 }
 
 enum orl_result orl_site_pack(struct site *site, const char *file)

@@ -1,6 +1,7 @@
 // What the owner of a site has put beside Oriel's files stays when the site is published again.
 #include <errno.h>
 #include <fcntl.h>
+#include <fts.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -83,56 +84,47 @@ static enum orl_result keep_file(const struct keeping *k, const char *from, cons
     return result;
 }
 
-static enum orl_result keep(const struct keeping *k, const char *path);
-
-static enum orl_result keep_folder(const struct keeping *k, const char *path, const char *from,
-                                   const char *to, const struct stat *st)
+static enum orl_result keep(const struct keeping *k, FTS *tree, FTSENT *entry)
 {
-    struct orl_names names = {0};
-    enum orl_result result = orl_dir_list(k->log, from, &names);
-    if (result == ORL_OK && names.count == 0)
-        result = orl_dir_make(k->log, to);
-    for (size_t i = 0; result == ORL_OK && i < names.count; i++) {
-        char *child = orl_format(k->log, "%s%s%s", path, *path ? "/" : "", names.items[i]);
-        result = child ? keep(k, child) : ORL_ERR_MEMORY;
-        free(child);
+    const char *path = entry->fts_path + strlen(k->old);
+    path += *path == '/';
+    const char *to = ORL_PATH(k->new, "%s", path);
+    struct stat there;
+    bool taken = lstat(to, &there) == 0, is_folder = taken && S_ISDIR(there.st_mode);
+    if (entry->fts_errno)
+        return orl_fail(k->log, ORL_ERR_IO, "%s: %s", entry->fts_path, strerror(entry->fts_errno));
+    if (entry->fts_info == FTS_DP) { // what is in a folder has been kept
+        if (is_folder && *path)
+            (void)!chmod(to, entry->fts_statp->st_mode & 07777);
+        return ORL_OK;
     }
-    if (result == ORL_OK && *path && orl_path_is_dir(to))
-        (void)!chmod(to, st->st_mode & 07777);
-    orl_names_finish(&names);
-    return result;
-}
-
-static enum orl_result keep(const struct keeping *k, const char *path)
-{
-    struct stat st, there;
-    char *from = orl_path_join(k->log, k->old, path), *to = orl_path_join(k->log, k->new, path);
-    enum orl_result result = from && to ? ORL_OK : ORL_ERR_MEMORY;
-    if (result == ORL_OK && lstat(from, &st) != 0)
-        result = orl_fail(k->log, ORL_ERR_IO, "%s: %s", from, strerror(errno));
-    if (result != ORL_OK || is_listed(k, path))
-        goto end;
-    bool taken = lstat(to, &there) == 0;
-    if (S_ISDIR(st.st_mode) && (!taken || S_ISDIR(there.st_mode)))
-        result = keep_folder(k, path, from, to, &st);
-    else if (taken && k->knows)
-        result = orl_fail(k->log, ORL_ERR_ARGUMENT, "%s: was not written by Oriel, and the new site "
-                          "has something of this name: move it elsewhere", from);
-    else if (!taken && (result = orl_file_make_folder(k->log, to)) == ORL_OK)
-        result = keep_file(k, from, to, &st);
-end:
-    free(from);
-    free(to);
-    return result;
+    bool listed = is_listed(k, path);
+    if (!listed && entry->fts_info == FTS_D && taken == is_folder)
+        return fts_children(tree, FTS_NAMEONLY) ? ORL_OK : orl_dir_make(k->log, to);
+    (void)fts_set(tree, entry, FTS_SKIP);
+    if (!listed && taken && k->knows)
+        return orl_fail(k->log, ORL_ERR_ARGUMENT, "%s: was not written by Oriel, and the new site "
+                        "has something of this name: move it elsewhere", entry->fts_path);
+    if (listed || taken)
+        return ORL_OK;
+    ORL_TRY(orl_file_make_folder(k->log, to));
+    return keep_file(k, entry->fts_path, to, entry->fts_statp);
 }
 
 enum orl_result orl_site_keep(const struct site *site, const char *old)
 {
     struct keeping k = {.log = site->log, .old = old, .new = site->dir};
+    char *roots[] = {(char *)old, NULL};
     if (!orl_path_is_dir(old))
         return ORL_OK;
-    enum orl_result result = read_list(&k);
-    ORL_THEN(result, keep(&k, ""));
+    FTS *tree = fts_open(roots, FTS_PHYSICAL | FTS_COMFOLLOW | FTS_NOCHDIR, NULL);
+    enum orl_result result = tree ? read_list(&k) : ORL_ERR_MEMORY;
+    for (FTSENT *entry; result == ORL_OK && (entry = fts_read(tree));)
+        result = keep(&k, tree, entry);
+    if (result == ORL_OK && errno != 0) // of fts_read
+        result = orl_file_failed(k.log, old);
+    if (tree)
+        fts_close(tree);
     orl_names_finish(&k.listed);
     return result;
 }
