@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <libwebsockets.h>
+
 #include "bridge/bridge.h"
 #include "io/picture.h"
 #include "core/memory.h"
@@ -230,14 +232,8 @@ static bool photo_number(const struct content *content, const char *path, const 
 
 static const char *type_of(const char *path)
 {
-    const char *dot = strrchr(path, '.');
-    static const char *const types[][2] = {
-        {".js", "text/javascript"}, {".css", "text/css"}, {".json", "application/json"},
-        {".svg", "image/svg+xml"}, {".jpg", "image/jpeg"}, {".png", "image/png"}, {".bin", "application/octet-stream"}};
-    for (size_t i = 0; dot && i < ORL_COUNT(types); i++)
-        if (strcmp(dot, types[i][0]) == 0)
-            return types[i][1];
-    return "text/plain";
+    const char *type = lws_get_mimetype(path, NULL);
+    return type ? type : "application/octet-stream";
 }
 
 static enum orl_result find_in_site(const struct content *content, const char *path,

@@ -8,7 +8,6 @@
 #include <string.h>
 #include <strings.h>
 #include <netdb.h>
-#include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -58,7 +57,7 @@ struct server {
     struct content content;
     struct lws_context *context;
     char policy[1024];         // where the page and what it shows may come from
-    struct lws_protocol_vhost_options headers[4]; // of every answer
+    struct lws_protocol_vhost_options headers; // of every answer
     struct lws_dll2_owner sessions; // of clients that walk
     unsigned clock;
     char token[2 * TOKEN_BYTES + 1]; // "": no token is needed
@@ -128,24 +127,6 @@ static int end_file(struct lws *wsi, struct session *session)
     return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-static bool add_header(struct lws *wsi, enum lws_token_indexes token, const char *value, unsigned char **at,
-                       unsigned char *end)
-{
-    return !lws_add_http_header_by_token(wsi, token, (const unsigned char *)value, (int)strlen(value), at, end);
-}
-
-// A body that came with the request is not read: the connection ends.
-static int refuse_method(struct lws *wsi)
-{
-    unsigned char buffer[LWS_PRE + HEADERS], *at = buffer + LWS_PRE, *end = buffer + sizeof buffer - 1;
-    bool told = !lws_add_http_header_status(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, &at, end) &&
-                add_header(wsi, WSI_TOKEN_HTTP_ALLOW, "GET, HEAD", &at, end) &&
-                !lws_add_http_header_content_length(wsi, 0, &at, end) &&
-                !lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end);
-    (void)told; // the connection ends in any case
-    return -1;
-}
-
 static int start_file(struct server *server, struct lws *wsi, struct session *session,
                       const char *path)
 {
@@ -154,8 +135,10 @@ static int start_file(struct server *server, struct lws *wsi, struct session *se
     int length, method = lws_http_get_uri_and_method(wsi, &uri, &length);
     if (!asks_from_here(server, wsi))
         return refuse(wsi, HTTP_STATUS_FORBIDDEN);
-    if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
-        return refuse_method(wsi);
+    if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD) {
+        (void)!lws_return_http_status(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, NULL);
+        return -1; // a body that came with the request is not read: the connection ends
+    }
     free(session->file.owned);
     enum orl_result result = orl_content_find(&server->content, path, &session->file);
     if (result != ORL_OK)
@@ -166,7 +149,6 @@ static int start_file(struct server *server, struct lws *wsi, struct session *se
     session->written = 0;
     if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, session->file.type, session->file.size,
                                     &at, end) ||
-        !add_header(wsi, WSI_TOKEN_HTTP_CACHE_CONTROL, "no-cache", &at, end) ||
         lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &at, end))
         return -1;
     if (method == LWSHUMETH_HEAD)
@@ -469,18 +451,6 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 
 // --- the server ---
 
-static enum orl_result make_token(struct server *server)
-{
-    unsigned char bytes[TOKEN_BYTES];
-    if (is_local(server->params->host))
-        return ORL_OK;
-    if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
-        return orl_fail(server->log, ORL_ERR_IO, "no random numbers for a token");
-    for (size_t i = 0; i < sizeof bytes; i++)
-        snprintf(server->token + 2 * i, 3, "%02x", bytes[i]);
-    return ORL_OK;
-}
-
 // Fails early: libwebsockets would wait for an address that this machine does not have.
 static enum orl_result check_address(const struct orl_log *log, const char *host)
 {
@@ -502,21 +472,20 @@ static enum orl_result check_address(const struct orl_log *log, const char *host
 // --embed-in names them, nor show its pictures.
 static enum orl_result make_headers(struct server *server)
 {
+    static const struct lws_protocol_vhost_options same[] = {
+        {&same[1], NULL, "x-content-type-options:", "nosniff"},
+        {&same[2], NULL, "referrer-policy:", "no-referrer"}, // the address may hold the token
+        {&same[3], NULL, "cross-origin-resource-policy:", "same-origin"},
+        {&same[4], NULL, "cache-control:", "no-cache"},
+        {NULL, NULL, "allow:", "GET, HEAD"}};
     const char *others = server->params->embed_in ? server->params->embed_in : "";
-    struct lws_protocol_vhost_options *h = server->headers;
     int length = snprintf(server->policy, sizeof server->policy,
                           "default-src 'self'; img-src 'self' blob: data:; base-uri 'none'; "
                           "form-action 'none'; frame-ancestors 'self' %s", others);
     if (length >= (int)sizeof server->policy || strpbrk(others, ";,\r\n"))
         return orl_fail(server->log, ORL_ERR_ARGUMENT, "--embed-in %s: must be origins such as "
                         "https://museum.example, with spaces between them", others);
-    h[0] = (struct lws_protocol_vhost_options){&h[1], NULL, "content-security-policy:",
-                                               server->policy};
-    h[1] = (struct lws_protocol_vhost_options){&h[2], NULL, "x-content-type-options:", "nosniff"};
-    // The address may hold the token.
-    h[2] = (struct lws_protocol_vhost_options){&h[3], NULL, "referrer-policy:", "no-referrer"};
-    h[3] = (struct lws_protocol_vhost_options){NULL, NULL, "cross-origin-resource-policy:",
-                                               "same-origin"};
+    server->headers = (struct lws_protocol_vhost_options){same, NULL, "content-security-policy:", server->policy};
     return ORL_OK;
 }
 
@@ -529,13 +498,15 @@ static enum orl_result listen_there(struct server *server)
     const struct orl_walk_params *params = server->params;
     struct lws_context_creation_info info = {
         .port = params->port, .iface = params->host, .protocols = protocols,
-        .user = server, .headers = server->headers, .timeout_secs = IDLE_S, .keepalive_timeout = IDLE_S,
+        .user = server, .headers = &server->headers, .timeout_secs = IDLE_S, .keepalive_timeout = IDLE_S,
         .options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND, .gid = (gid_t)-1, .uid = (uid_t)-1};
     lws_set_log_level(LLL_ERR, NULL);
     server->context = lws_create_context(&info);
     if (!server->context)
         return orl_fail(server->log, ORL_ERR_IO, "cannot listen on %s, port %d: it is taken",
                         params->host, params->port);
+    if (!is_local(params->host) && lws_hex_random(server->context, server->token, sizeof server->token) != 0)
+        return orl_fail(server->log, ORL_ERR_IO, "no random numbers for a token");
     int port = lws_get_vhost_listen_port(lws_get_vhost_by_name(server->context, "default"));
     char address[256];
     snprintf(address, sizeof address, "http://%s:%d/%s%s", params->host, port,
@@ -636,7 +607,6 @@ enum orl_result orl_walk_serve(struct orl_gpu *gpu, struct orl_renderer *rendere
         params->live ? orl_live_start(log, scene, params->live, &server.live) : ORL_OK;
     ORL_THEN(result, orl_content_init(log, scene, params->title, edits, params->choice, &server.content));
     ORL_THEN(result, check_address(log, params->host));
-    ORL_THEN(result, make_token(&server));
     ORL_THEN(result, orl_walk_warm_up(&server.walk, &params->choice->params));
     ORL_THEN(result, make_headers(&server));
     ORL_THEN(result, listen_there(&server));
