@@ -1,21 +1,13 @@
 'use strict';
 // Fills the tables of the page from the figures that lie in it as JSON.
 
-function data(id) {
-    return JSON.parse(document.getElementById(id).textContent);
-}
+const data = id => JSON.parse(document.getElementById(id).textContent);
+const fixed = (value, digits) => Number.isFinite(value) ? value.toFixed(digits) : '–';
 
-function fixed(value, digits) {
-    return typeof value === 'number' && isFinite(value) ? value.toFixed(digits) : '–';
-}
-
-function addRow(table, cells, header) {
-    const row = table.insertRow();
-    for (const text of cells) {
-        const cell = document.createElement(header ? 'th' : 'td');
-        cell.textContent = text;
-        row.append(cell);
-    }
+function addRow(table, cells) {
+    const row = document.getElementById(table).insertRow();
+    for (const text of cells)
+        row.insertCell().textContent = text;
     return row;
 }
 
@@ -25,10 +17,8 @@ function figures(mean) {
 }
 
 function fillAccuracy(evals, main) {
-    const table = document.getElementById('accuracy');
-    addRow(table, ['method', 'PSNR', 'SSIM', 'covered', 'time a picture'], true);
     for (const one of evals)
-        addRow(table, [one.method, ...figures(one.mean)])
+        addRow('accuracy', [one.method, ...figures(one.mean)])
             .classList.toggle('main', one.method === main);
 }
 
@@ -39,18 +29,16 @@ const STAGE_NAMES = {
 };
 
 function fillStages(stages, steps) {
-    const table = document.getElementById('stages');
     const some = (value, digits, unit) => value > 0 ? fixed(value, digits) + unit : '';
-    addRow(table, ['step', 'time', 'processor time', 'memory at most'], true);
     for (const step of steps) {
         if (step.name !== 'scene') {
-            addRow(table, [step.name, fixed(step.seconds, 0) + ' s', '', '']);
+            addRow('stages', [step.name, fixed(step.seconds, 0) + ' s', '', '']);
             continue;
         }
         for (const [name, stage] of Object.entries(stages)) {
             const peak = Math.max(stage.peak_rss_mib || 0, stage.child_peak_rss_mib || 0);
-            addRow(table, [`scene: ${STAGE_NAMES[name] || name}`, fixed(stage.wall_s, 1) + ' s',
-                           some(stage.cpu_s, 1, ' s'), some(peak, 0, ' MiB')]);
+            addRow('stages', [`scene: ${STAGE_NAMES[name] || name}`, fixed(stage.wall_s, 1) + ' s',
+                              some(stage.cpu_s, 1, ' s'), some(peak, 0, ' MiB')]);
         }
     }
 }
@@ -60,21 +48,11 @@ function fillStages(stages, steps) {
 function fillCaptions(evals) {
     for (const caption of document.querySelectorAll('[data-stem]')) {
         const { method, stem } = caption.dataset;
-        const same = view => {
-            const flat = view.photo.replace(/\//g, '_');
-            return flat === stem || flat.replace(/\.[^.]*$/, '') === stem;
-        };
-        const one = evals.find(e => e.method === method);
-        const view = one && one.views.find(same);
+        const names = photo => [photo, photo.replace(/\.[^.]*$/, '')].map(name => name.replace(/\//g, '_'));
+        const view = evals.find(e => e.method === method)?.views.find(v => names(v.photo).includes(stem));
         if (view)
             caption.append(`, ${fixed(view.psnr_db, 1)} dB`);
     }
-}
-
-function slide(event) {
-    const frame = event.target.parentElement;
-    frame.querySelector('.top').style.clipPath = `inset(0 ${100 - event.target.value}% 0 0)`;
-    frame.querySelector('.bar').style.left = `${event.target.value}%`;
 }
 
 const evals = [data('eval-json')].flat();
@@ -88,8 +66,8 @@ fillStages(scene.stages || {}, run.steps);
 fillCaptions(evals);
 fact('fact-psnr', fixed(best.mean.psnr_db, 1) + ' dB');
 fact('fact-ms', fixed(best.mean.render_ms, 0) + ' ms');
-fact('fact-points', ((scene.counts && scene.counts.points) || 0).toLocaleString('en'));
+fact('fact-points', (scene.counts?.points || 0).toLocaleString('en'));
 const software = /llvmpipe|softpipe|swrast/i.test(best.device);
 fact('device', best.device + (software ? ' (software: no graphics card was used)' : ''));
 for (const input of document.querySelectorAll('.compare input'))
-    input.addEventListener('input', slide);
+    input.addEventListener('input', () => input.parentElement.style.setProperty('--share', `${input.value}%`));

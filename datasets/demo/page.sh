@@ -121,10 +121,10 @@ page_figures() {
 <p>Means over the $test_count photographs kept aside, over whole pictures, holes included. PSNR: how
 close colours are, in decibels; more is better, and 6 dB more halve the differences. SSIM: how alike
 structures are, at most 1. Covered: share of the picture where Oriel found a surface.</p>
-<table id="accuracy"></table>
+<table id="accuracy"><tr><th>method<th>PSNR<th>SSIM<th>covered<th>time a picture</table>
 <h2>Time and memory</h2>
 <p>On <b id="device"></b>, $(nproc) processor cores.</p>
-<table id="stages"></table>
+<table id="stages"><tr><th>step<th>time<th>processor time<th>memory at most</table>
 HTML
 }
 
