@@ -33,14 +33,6 @@ async function load(url)
     }
 }
 
-function decodeBase64(string)
-{
-    const binary = atob(string), bytes = new Uint8Array(binary.length);
-    for (let i = 0; i < binary.length; i++)
-        bytes[i] = binary.charCodeAt(i);
-    return bytes.buffer;
-}
-
 // files: of the manifest
 export const bytesOf = files => files.reduce((sum, file) => sum + file.bytes, 0);
 
@@ -69,16 +61,16 @@ export class Files {
     // The file's bytes, at once.
     async get(path)
     {
-        const data = this.embedded ? this.unpack(path) : await this.fetch(path);
+        const data = await (this.embedded ? this.unpack(path) : this.fetch(path));
         this.bytes += data.byteLength;
         return data;
     }
 
-    unpack(path)
+    async unpack(path)
     {
         if (!(path in this.embedded))
             throw new Error(text.missing(path));
-        return decodeBase64(this.embedded[path]);
+        return (await fetch(`data:;base64,${this.embedded[path]}`)).arrayBuffer();
     }
 
     // A connection may be reset or lost, and a server busy, for a moment.
