@@ -69,10 +69,12 @@ export class LocalPicture {
         canvas.addEventListener("webglcontextrestored", () => location.reload());
         for (const photo of this.moving ? [] : photos)
             this.request(photo);
-        manifest.points.files.forEach((file, number) =>
-            files.schedule(() => this.pointsUrgency(file), () => this.loadPoints(file, number)));
+        manifest.points.files.forEach((file, number) => files.schedule(() => this.pointsUrgency(file), async () => {
+            this.cloud.addFile(number, await files.get(file.file));
+            onChange();
+        }));
         if (manifest.soft)
-            files.schedule(() => this.softUrgency(), () => this.loadSoft());
+            this.requestSoft(null, async () => this.renderer.addSoft(await files.get(manifest.soft.file)));
     }
 
     // --- loading ---
@@ -104,35 +106,20 @@ export class LocalPicture {
             this.first = null;
         this.renderer.photos.add(photo, ...await (begun || decode(this.files, photo)));
         if (photo.soft)
-            this.files.schedule(() => this.softUrgency(photo), () => this.loadSoftOf(photo));
+            this.requestSoft(photo, async () =>
+                this.renderer.photos.addSoft(photo, await decodeFile(this.files, photo.soft)));
         this.onChange();
     }
 
-    // Soft splats change the picture once the last of their files is there, and the view rests.
-    softUrgency(photo) { return this.hasPhotos ? SOFT_LAST + this.rank.indexOf(photo) : Infinity; }
-
-    async loadSoft()
+    // Soft splats, or what they show in a photograph. They change the picture once the last of their files is there,
+    // and the view rests.
+    requestSoft(photo, load)
     {
-        this.renderer.addSoft(await this.files.get(this.manifest.soft.file));
-        this.softCame();
-    }
-
-    async loadSoftOf(photo)
-    {
-        this.renderer.photos.addSoft(photo, await decodeFile(this.files, photo.soft));
-        this.softCame();
-    }
-
-    softCame()
-    {
-        if (this.complete)
-            this.onChange();
-    }
-
-    async loadPoints(file, number)
-    {
-        this.cloud.addFile(number, await this.files.get(file.file));
-        this.onChange();
+        this.files.schedule(() => this.hasPhotos ? SOFT_LAST + this.rank.indexOf(photo) : Infinity, async () => {
+            await load();
+            if (this.complete)
+                this.onChange();
+        });
     }
 
     // What is wanted for the view; photographs that made room for others are asked for again.
