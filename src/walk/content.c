@@ -269,7 +269,7 @@ enum orl_result orl_content_find(const struct content *content, const char *path
     if (photo_number(content, path, "/photos/", &number))
         return make_picture(content, number, PICTURE_SIDE, PICTURE_QUALITY, file);
     for (const struct orl_web_file *f = orl_web_table; f->name; f++)
-        if (strcmp(f->name, path + 1) == 0 && strcmp(f->name, "index.html") != 0) {
+        if (strcmp(f->name, path + 1) == 0) {
             *file = text_file(type_of(path), f->text);
             return ORL_OK;
         }
