@@ -1,10 +1,12 @@
-// oriel trim: the whole scene is measured, the search makes it smaller, and the result is written.
+// oriel trim: the search makes the scene smaller, and the result is written and compared with the whole: an ordinary scene
+// folder, whose scene.json is written last.
 #include "eval/trim.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
+#include "core/file.h"
 #include "core/json.h"
 #include "core/memory.h"
 #include "core/new_dir.h"
@@ -12,13 +14,31 @@
 #include "eval/eval.h"
 #include "eval/search.h"
 #include "eval/trim_search.h"
+#include "scene/subset.h"
+#include "scene/tuned_settings.h"
 
-enum { RANKED_VIEWS = 48, TUNED_VIEWS = 6, TUNED_DIVIDE = 2 };
-enum { DECIDING_MAX = 48 }; // targets that decide on a step; all confirm the whole
-// Least gain of a tuned option, as a share of the tolerance.
-static const double tuned_gain = 0.1;
-// Share of the time that tuning may take.
-static const double tuned_time = 0.2;
+// --- what a scene takes ---
+
+static size_t file_size(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISREG(status.st_mode) ? (size_t)status.st_size : 0;
+}
+
+// Bytes of the scene's points, cameras, photographs that are not held out and their masks, on disk.
+static size_t file_bytes(const struct orl_scene *scene)
+{
+    static const char *const names[] = {"points.ply", "sparse/cameras.bin", "sparse/images.bin",
+                                        "sparse/points3D.bin", "mesh.ply"};
+    size_t bytes = 0;
+    for (size_t i = 0; i < ORL_COUNT(names); i++)
+        bytes += file_size(ORL_PATH(scene->dir, "%s", names[i]));
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (!scene->photos[i].test)
+            bytes += file_size(orl_scene_file(scene, i, ORL_FILE_PHOTO).text) +
+                     file_size(orl_scene_file(scene, i, ORL_FILE_MASK).text);
+    return bytes;
+}
 
 // Opens a scene as every command does. Held-out photographs are compared with it, and what it takes
 // on the device is counted.
@@ -40,7 +60,7 @@ static enum orl_result look_at(struct trim_search *s, const char *dir, const str
     if (result == ORL_OK) {
         orl_trim_count_bytes(s->gpu, &figures->point_bytes, &figures->photo_bytes);
         figures->device_bytes = orl_gpu_bytes(s->gpu);
-        figures->file_bytes = orl_trim_scene_file_bytes(scene);
+        figures->file_bytes = file_bytes(scene);
     }
     orl_eval_finish(&eval);
     orl_renderer_destroy(&renderer);
@@ -48,93 +68,77 @@ static enum orl_result look_at(struct trim_search *s, const char *dir, const str
     return result;
 }
 
-// --- the whole ---
+// --- the scene that is written ---
 
-// Moves `count` of the first `all` targets, evenly chosen, to the front.
-static void move_to_front(struct orl_heldout *targets, size_t count, size_t all)
+// Lists the photographs that trimming removed under "left_out".
+static void list_left_out(const struct orl_subset *subset)
 {
-    for (size_t i = 0; i < count; i++) {
-        const size_t from = (2 * i + 1) * all / (2 * count);
-        const struct orl_heldout moved = targets[from];
-        targets[from] = targets[i];
-        targets[i] = moved;
+    const struct orl_scene *scene = subset->scene;
+    json_t *left = json_object_get(subset->manifest, "left_out");
+    if (!json_is_array(left)) {
+        left = json_array();
+        json_object_set_new(subset->manifest, "left_out", left);
     }
+    for (size_t i = 0; i < scene->photo_count; i++)
+        if (!subset->keep[i])
+            json_array_append_new(left, json_pack("{s:s, s:s}", "name", scene->photos[i].name,
+                                                  "why", "trimmed"));
 }
 
-static enum orl_result start(struct trim_search *s)
+static enum orl_result write_manifest(const struct orl_subset *subset, const struct orl_choice *choice)
 {
-    const struct orl_trim_params *p = s->params;
-    ORL_TRY(orl_validation_load(s->log, s->scene, 0, p->size_divide, &s->targets));
-    s->deciding_count = s->targets.count < DECIDING_MAX ? s->targets.count : DECIDING_MAX;
-    s->validation_count = (size_t)p->views < s->deciding_count ? (size_t)p->views : s->deciding_count;
-    move_to_front(s->targets.views, s->deciding_count, s->targets.count);
-    move_to_front(s->targets.views, s->validation_count, s->deciding_count);
-    s->most = orl_trim_has_budget(s)
-                  ? (struct orl_score_loss){INFINITY, INFINITY, INFINITY}
-                  : (struct orl_score_loss){p->tolerance_db, p->tolerance_ssim, p->worst_db};
-    ORL_TRY(orl_point_ranking_make(s->gpu, s->scene, RANKED_VIEWS, p->progress, &s->ranking));
-    ORL_TRY(orl_trim_order_photos(s));
-    ORL_TRY(orl_trim_state_begin(s, ORL_TRIM_OPTION, &s->first));
-    s->now = s->first;
-    ORL_TRY(orl_trim_model_open(s, s->first));
-    ORL_TRY(orl_trim_measure_all(s, &s->trim->before));
-    ORL_TRY(orl_trim_time_first(s));
-    s->first->step.bytes = orl_trim_model_bytes(s, s->first);
-    return ORL_OK;
+    const struct orl_scene *scene = subset->scene;
+    json_t *root = subset->manifest, *tuned = json_object_get(root, "tuned");
+    json_t *render = orl_defaults_json(&scene->defaults);
+    const char *path = ORL_PATH(subset->dir, "scene.json"), *method = choice->method->name;
+    json_object_set_new(render, "method", json_string(method));
+    if (!json_is_object(tuned)) {
+        tuned = json_object();
+        json_object_set_new(root, "tuned", tuned);
+    }
+    json_object_set_new(tuned, method, json_pack("{s:o}", "settings", orl_choice_settings(choice)));
+    list_left_out(subset);
+    json_object_set_new(json_object_get(root, "counts"), "points", json_integer((json_int_t)scene->points.count));
+    json_object_set_new(root, "trimmed_from", orl_json_string(scene->dir));
+    return json_object_set_new(root, "render", render) == 0
+               ? orl_json_write(subset->log, path, root)
+               : orl_fail(subset->log, ORL_ERR_MEMORY, "%s: no memory for it", path);
 }
 
-// Fits the method's options at half the size, where a frame takes a quarter of the time.
-static enum orl_result tune(struct trim_search *s)
+// Writes the scene in the search's state to the folder `out`.
+static enum orl_result write_scene(const struct trim_search *s, const struct orl_choice *choice, const char *out)
 {
-    struct orl_search search;
-    const struct orl_trim_params *p = s->params;
-    const struct orl_search_params params = {
-        .size_divide = TUNED_DIVIDE * p->size_divide, .views = TUNED_VIEWS,
-        .gain_db = tuned_gain * p->tolerance_db, .budget_s = tuned_time * p->budget_s,
-        .progress = p->progress};
-    enum orl_result result = orl_search_run(s->gpu, orl_trim_model_of(s->now)->renderer, s->scene,
-                                            &params, p->start, NULL, &search);
-    s->tuned = search.best.params;
-    ORL_THEN(result, orl_trim_take_tuned(s));
-    orl_search_finish(&search);
+    const struct orl_scene *scene = &orl_trim_model_of(s->now)->scene;
+    bool *keep = orl_array(s->log, scene->photo_count, sizeof *keep);
+    struct orl_subset subset = {.log = s->log, .scene = scene, .keep = keep, .points = &scene->points, .dir = out};
+    for (size_t i = 0; keep && i < scene->photo_count; i++)
+        keep[i] = !s->now->removed[i];
+    enum orl_result result = keep ? orl_dir_make(s->log, out) : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_subset_begin(&subset));
+    for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++)
+        if (keep[i])
+            result = orl_subset_copy_photo(&subset, i);
+    ORL_THEN(result, write_manifest(&subset, choice));
+    json_decref(subset.manifest);
+    free(keep);
     return result;
 }
 
-static enum orl_result write_and_look(struct trim_search *s)
+// --- the whole ---
+
+static enum orl_result run(struct trim_search *s, const char *out)
 {
     struct orl_trim *trim = s->trim;
+    ORL_TRY(orl_trim_search(s));
     trim->choice = *s->params->start;
     trim->choice.params = s->now->render;
-    ORL_TRY(orl_trim_write_scene(s->log, &orl_trim_model_of(s->now)->scene, s->now->removed, &trim->choice, s->part));
+    ORL_TRY(write_scene(s, &trim->choice, out));
     orl_trim_models_close(s->now); // so that only the scene's own bytes are counted
     // Only now, when nothing can change any more, are held-out photographs looked at.
     ORL_TRY(look_at(s, s->scene->dir, s->params->start, &trim->before));
-    return look_at(s, s->part, &trim->choice, &trim->after);
-}
-
-static enum orl_result run(struct trim_search *s)
-{
-    ORL_TRY(start(s));
-    if (!s->params->keep_options)
-        ORL_TRY(tune(s));
-    ORL_TRY(orl_trim_climb(s));
-    ORL_TRY(orl_trim_make_faster(s));
-    ORL_TRY(orl_trim_confirm(s));
-    ORL_TRY(write_and_look(s));
+    ORL_TRY(look_at(s, out, &trim->choice, &trim->after));
     orl_progress_report(s->params->progress, "trim", 1, 1, NULL);
     return ORL_OK;
-}
-
-static void finish(struct trim_search *s)
-{
-    while (s->now) {
-        struct trim_state *before = s->now->before;
-        orl_trim_state_destroy(&s->now);
-        s->now = before;
-    }
-    orl_point_ranking_finish(&s->ranking);
-    orl_validation_finish(&s->targets);
-    free(s->order);
 }
 
 enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
@@ -151,9 +155,9 @@ enum orl_result orl_trim_run(struct orl_gpu *gpu, const struct orl_scene *scene,
     struct orl_new_dir part = {.fd = -1};
     enum orl_result result = orl_new_dir_begin(log, params->out, false, &part);
     struct trim_search s = {.gpu = gpu, .log = log, .scene = scene, .params = params, .trim = trim,
-                            .part = part.path, .start_s = orl_time_s()};
-    ORL_THEN(result, run(&s));
-    finish(&s);
+                            .start_s = orl_time_s()};
+    ORL_THEN(result, run(&s, part.path));
+    orl_trim_search_finish(&s);
     ORL_THEN(result, orl_new_dir_finish(log, &part));
     orl_new_dir_abort(log, &part);
     if (result != ORL_OK)

@@ -1,4 +1,5 @@
-#include "eval/trim_points.h"
+// Which points a scene can do without.
+#include "eval/trim_search.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,9 +8,10 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "core/vec3.h"
-#include "eval/validation.h"
-#include "render/proxy/importance.h"
+#include "render/proxy/proxy.h"
+#include "render/proxy/splats.h"
 #include "scene/nearest_points.h"
+#include "scene/point_blocks.h"
 #include "scene/point_radii.h"
 
 // Sides of the pictures' pixels, in pixels of full resolution.
@@ -23,11 +25,22 @@ static const double growth_max = 1.5;
 
 // --- the views ---
 
+// Which points are nearest in a view, row by row.
+struct drawn {
+    int width, height;
+    uint32_t *point; // owned: index in the scene's points; UINT32_MAX: none
+    float *depth;    // owned: z of that point; INFINITY: none
+};
+
 struct ranker {
+    struct orl_gpu *gpu;
+    struct proxy proxy;
+    uint32_t *points;       // owned, per point on the device: its index in the scene
+    size_t count;           // of these
     struct orl_view *views; // owned
     size_t view_count;
-    struct orl_nearest_points *drawn; // owned, one for each view
-    uint8_t *level;                   // owned, per point: 1 + the last of pixel_sides; 0: never
+    struct drawn *drawn;    // owned, one for each view
+    uint8_t *level;         // owned, per point: 1 + the last of pixel_sides; 0: never
     struct orl_point_ranking *ranking;
 };
 
@@ -76,30 +89,50 @@ static enum orl_result choose_views(const struct orl_log *log, const struct orl_
 
 // --- the ranking ---
 
-static enum orl_result draw_views(struct orl_gpu *gpu, const struct orl_scene *scene,
-                                  const struct orl_progress *progress, struct ranker *r)
+// Splats all points into the view, and counts the pixels that each wins. Of points at the same depth one wins.
+static enum orl_result draw_view(struct ranker *r, const struct orl_view *view, struct drawn *drawn)
 {
-    struct orl_importance *importance = NULL;
-    r->drawn = orl_array(orl_gpu_log(gpu), r->view_count, sizeof *r->drawn);
-    enum orl_result result = r->drawn ? orl_importance_create(gpu, scene, &importance)
-                                      : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < r->view_count; i++) {
-        struct orl_nearest_points *drawn = &r->drawn[i];
-        orl_progress_report(progress, "points", (double)i, (double)r->view_count, NULL);
-        result = orl_progress_cancelled(progress)
-                     ? ORL_ERR_CANCELLED
-                     : orl_importance_draw(importance, &r->views[i], drawn);
-        for (size_t k = 0;
-             result == ORL_OK && k < (size_t)drawn->width * (size_t)drawn->height; k++)
-            if (drawn->point[k] != UINT32_MAX)
-                r->ranking->pixels[drawn->point[k]]++;
+    const struct orl_log *log = orl_gpu_log(r->gpu);
+    const size_t pixels = (size_t)view->camera.width * (size_t)view->camera.height;
+    struct surface surface;
+    *drawn = (struct drawn){view->camera.width, view->camera.height, orl_array(log, pixels, sizeof *drawn->point),
+                            orl_array(log, pixels, sizeof *drawn->depth)};
+    ORL_TRY_MEMORY(drawn->point && drawn->depth);
+    ORL_TRY(orl_proxy_draw(r->gpu, &r->proxy, view, &orl_methods[0].params, false, &r->proxy.view_target,
+                           &surface));
+    const struct splat_target *target = r->proxy.view_target;
+    orl_tex_read(target->splat_index, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, 4 * pixels, drawn->point);
+    orl_tex_read(target->splat_depth, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, 4 * pixels, drawn->depth); // its bits
+    ORL_TRY(orl_gpu_finish(r->gpu));
+    for (size_t i = 0; i < pixels; i++) {
+        const uint32_t point = drawn->point[i] < r->count ? r->points[drawn->point[i]] : UINT32_MAX;
+        drawn->point[i] = point;
+        if (point == UINT32_MAX)
+            drawn->depth[i] = INFINITY;
+        else
+            r->ranking->pixels[point]++;
     }
-    orl_importance_destroy(&importance);
-    return result;
+    return ORL_OK;
+}
+
+static enum orl_result draw_views(struct ranker *r, const struct orl_scene *scene, const struct orl_progress *progress)
+{
+    const struct orl_log *log = orl_gpu_log(r->gpu);
+    r->drawn = orl_array(log, r->view_count, sizeof *r->drawn);
+    ORL_TRY_MEMORY(r->drawn);
+    ORL_TRY(orl_proxy_create(r->gpu, scene, &orl_proxy_splats, 0, &r->proxy));
+    ORL_TRY(orl_point_order(log, &scene->points, NULL, ORL_BLOCK_POINTS, &r->points, &r->count));
+    for (size_t i = 0; i < r->view_count; i++) {
+        orl_progress_report(progress, "points", (double)i, (double)r->view_count, NULL);
+        if (orl_progress_cancelled(progress))
+            return ORL_ERR_CANCELLED;
+        ORL_TRY(draw_view(r, &r->views[i], &r->drawn[i]));
+    }
+    return ORL_OK;
 }
 
 // Chooses a point for the pixel of side `side` whose first small pixel is at (x, y).
-static uint32_t choose(const struct ranker *r, const struct orl_nearest_points *drawn, int x, int y,
+static uint32_t choose(const struct ranker *r, const struct drawn *drawn, int x, int y,
                        int side)
 {
     float nearest = INFINITY;
@@ -123,7 +156,7 @@ static uint32_t choose(const struct ranker *r, const struct orl_nearest_points *
     return chosen;
 }
 
-static void set_levels(const struct ranker *r, const struct orl_nearest_points *drawn)
+static void set_levels(const struct ranker *r, const struct drawn *drawn)
 {
     for (size_t k = 0; k < ORL_COUNT(pixel_sides); k++)
         for (int y = 0; y < drawn->height; y += pixel_sides[k])
@@ -154,7 +187,7 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
                                        struct orl_point_ranking *ranking)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
-    struct ranker r = {.ranking = ranking};
+    struct ranker r = {.gpu = gpu, .ranking = ranking};
     size_t count = scene->points.count;
     *ranking = (struct orl_point_ranking){.count = count};
     ranking->order = orl_array(log, count, sizeof *ranking->order);
@@ -163,12 +196,16 @@ enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_sce
     enum orl_result result =
         ranking->order && ranking->pixels && r.level ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, choose_views(log, scene, max_views, &r));
-    ORL_THEN(result, draw_views(gpu, scene, progress, &r));
+    ORL_THEN(result, draw_views(&r, scene, progress));
     for (size_t i = 0; result == ORL_OK && i < r.view_count; i++)
         set_levels(&r, &r.drawn[i]);
     ORL_THEN(result, sort(log, &r));
-    for (size_t i = 0; r.drawn && i < r.view_count; i++)
-        orl_nearest_points_finish(&r.drawn[i]);
+    for (size_t i = 0; r.drawn && i < r.view_count; i++) {
+        free(r.drawn[i].point);
+        free(r.drawn[i].depth);
+    }
+    orl_proxy_finish(gpu, &r.proxy);
+    free(r.points);
     free(r.drawn);
     free(r.level);
     free(r.views);

@@ -3,12 +3,33 @@
 #define ORL_EVAL_TRIM_SEARCH_H
 
 #include "eval/trim.h"
-#include "eval/trim_points.h"
 #include "eval/validation.h"
 
-// Levels of the parts, from the whole scene on.
-enum { TRIM_POINT_LEVELS = 25, TRIM_DEPTH_LEVELS = 5 };
-extern const double orl_trim_point_shares[TRIM_POINT_LEVELS];
+// --- trim_points.c: points are ranked by what they contribute to pictures, and a smaller cloud is made of the first ---
+
+struct orl_point_ranking {
+    uint32_t *order; // owned: indices into the scene's points, the most important first
+    uint32_t *pixels; // owned, per point of the scene: pixels of all views that it wins
+    size_t count;
+};
+// Ranks by the views of training photographs and views between neighbours, at most `max_views` > 0. At
+// every pixel of coarser and coarser pictures of a view one point of the nearest surface is chosen:
+// that which wins the most pixels of all views. A point ranks by the coarsest picture that it is
+// chosen in, then by its pixels. So the points that no view shows are last, those that only full
+// resolution needs are before them, and a first part of the order is spread evenly over pictures.
+enum orl_result orl_point_ranking_make(struct orl_gpu *gpu, const struct orl_scene *scene,
+                                       size_t max_views, const struct orl_progress *progress,
+                                       struct orl_point_ranking *ranking) ORL_CHECK_RESULT;
+void orl_point_ranking_finish(struct orl_point_ranking *ranking);
+
+// Makes a cloud of the first `count` points of `order`, with radii that close the gaps. Each point
+// takes the place of the points that it stands for: along its normal it moves to their mean, and its
+// normal and colour become theirs.
+enum orl_result orl_points_thin_out(const struct orl_log *log, const struct orl_points *from,
+                                    const uint32_t *order, size_t count,
+                                    struct orl_points *to) ORL_CHECK_RESULT;
+
+// --- the search ---
 
 // A scene in a state, ready to render.
 struct trim_model {
@@ -43,7 +64,6 @@ struct trim_search {
     const struct orl_scene *scene;
     const struct orl_trim_params *params;
     struct orl_trim *trim;
-    const char *part; // the folder that becomes params->out when it is whole
     struct orl_point_ranking ranking;
     // All training photographs, those that look at a step first before the others that decide on it.
     struct orl_validation targets;
@@ -57,17 +77,16 @@ struct trim_search {
     double start_s;
 };
 
-bool orl_trim_has_budget(const struct trim_search *s);
+// --- trim_search.c ---
 
-// --- trim_state.c ---
-
+// The whole search: s->now is the least state then, and s->trim tells of it.
+enum orl_result orl_trim_search(struct trim_search *s) ORL_CHECK_RESULT;
+void orl_trim_search_finish(struct trim_search *s);
 // Begins a state of this part as the search's is, which the caller changes.
 enum orl_result orl_trim_state_begin(const struct trim_search *s, enum orl_trim_part part,
                                      struct trim_state **out) ORL_CHECK_RESULT;
 // Releases the state alone, which may be NULL.
 void orl_trim_state_destroy(struct trim_state **state);
-// How the scene is drawn in this state. Texts are static or the search's scene's.
-struct orl_scene_defaults orl_trim_defaults(const struct trim_search *s, const struct trim_state *state);
 // The model that the state is drawn with.
 const struct trim_model *orl_trim_model_of(const struct trim_state *state);
 enum orl_result orl_trim_model_open(const struct trim_search *s, struct trim_state *state) ORL_CHECK_RESULT;
@@ -76,40 +95,15 @@ void orl_trim_models_close(struct trim_state *state);
 // Bytes of points and photographs on the device, without those in use only while a photograph is
 // loaded.
 void orl_trim_count_bytes(const struct orl_gpu *gpu, size_t *points, size_t *photos);
-// The same of a state.
-double orl_trim_model_bytes(const struct trim_search *s, const struct trim_state *state);
 // Opens the model of a state on trial, unless it shares one. Then measures it by the targets that look
 // first, and by all that decide unless the first lose far more than is allowed.
 enum orl_result orl_trim_measure(struct trim_search *s, struct trim_state *t) ORL_CHECK_RESULT;
-// Whether the losses are within the tolerances, of which the step may use this share of what is left.
-bool orl_trim_fits(const struct trim_search *s, const struct orl_score_loss *loss, double share);
 // The state on trial becomes the search's, and its step is reported. *t is NULL then.
 enum orl_result orl_trim_take(struct trim_search *s, struct trim_state **t) ORL_CHECK_RESULT;
 // Measures the targets that the search's state lacks.
 enum orl_result orl_trim_measure_all(struct trim_search *s, struct orl_trim_figures *figures) ORL_CHECK_RESULT;
 // Measures all targets, and takes the last steps back until they are within the tolerances.
 enum orl_result orl_trim_confirm(struct trim_search *s) ORL_CHECK_RESULT;
-
-// In the end a frame may take so many times as long as the whole scene's.
-double orl_trim_slow_limit(const struct trim_search *s);
-// Times frames of the whole scene, which the search begins with: first_ms.
-enum orl_result orl_trim_time_first(struct trim_search *s) ORL_CHECK_RESULT;
-// Compares frames of a state on trial with those of the state before: `slower`.
-enum orl_result orl_trim_time_trial(struct trim_search *s, struct trim_state *t) ORL_CHECK_RESULT;
-// Compares frames of the search's state with those of the whole scene, for the report. slow: they are
-// clearly slower than they may be.
-enum orl_result orl_trim_time_whole(struct trim_search *s, bool *slow) ORL_CHECK_RESULT;
-
-// --- trim_ladder.c ---
-
-// Takes the parts one after the other, each as far as the tolerances allow; with a budget until it
-// holds.
-enum orl_result orl_trim_climb(struct trim_search *s) ORL_CHECK_RESULT;
-// Makes a frame that takes longer than it may faster: by cheaper options, or without compressed
-// textures.
-enum orl_result orl_trim_make_faster(struct trim_search *s) ORL_CHECK_RESULT;
-// Takes the search's tuned options if they are better by the targets that decide.
-enum orl_result orl_trim_take_tuned(struct trim_search *s) ORL_CHECK_RESULT;
 
 // --- trim_photos.c ---
 
@@ -121,15 +115,5 @@ enum orl_result orl_trim_order_photos(struct trim_search *s) ORL_CHECK_RESULT;
 // than one may come back, too.
 enum orl_result orl_trim_remove_photos(struct trim_search *s, size_t count,
                                        struct trim_state *t) ORL_CHECK_RESULT;
-
-// --- trim_write.c ---
-
-// Bytes of the scene's points, cameras, photographs that are not held out and their masks, on disk.
-size_t orl_trim_scene_file_bytes(const struct orl_scene *scene);
-// Writes the model's scene to the folder `out`, without the photographs that `removed` marks, drawn by
-// the choice's method.
-enum orl_result orl_trim_write_scene(const struct orl_log *log, const struct orl_scene *scene,
-                                     const bool *removed, const struct orl_choice *choice,
-                                     const char *out) ORL_CHECK_RESULT;
 
 #endif

@@ -5,7 +5,6 @@
 #include "core/memory.h"
 #include "eval/validation.h"
 #include "eval/trim.h"
-#include "eval/trim_points.h"
 #include "eval/trim_search.h"
 #include "scene/colmap.h"
 #include "scene/manifest.h"
