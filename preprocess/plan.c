@@ -178,7 +178,7 @@ static json_t *densify_command(const struct planner *p, int pass, int part)
 {
     json_t *list = json_pack("[s, s, s, s, s+]", "oriel", "densify", p->dir, "--photos", p->dir,
                              "/stereo/fusion.cfg");
-    orl_arguments_record(list, orl_densify_options(), &p->densify, NULL);
+    orl_arguments_record(list, orl_densify_options(), &p->densify);
     add_option(list, "--pass", pass);
     add_part(list, part, p->parts);
     return list;

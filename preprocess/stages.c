@@ -535,7 +535,7 @@ static json_t *recorded_arguments(const struct orl_prepare_params *params)
         json_array_append_new(arguments, json_string(real ? real : params->inputs[i]));
         free(real);
     }
-    orl_arguments_record(arguments, orl_prepare_options(), params, NULL);
+    orl_arguments_record(arguments, orl_prepare_options(), params);
     return arguments;
 }
 

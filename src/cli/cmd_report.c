@@ -106,8 +106,8 @@ static enum orl_result run_report(struct call *call)
     char program[ORL_PATH_SIZE], path[ORL_PATH_SIZE];
     const char *script = realpath("/proc/self/exe", program)
                              ? find_script(call->log, program, call->command->name, path) : NULL;
-    orl_arguments_record(words, call->command->rows(), call->options, NULL);
-    orl_arguments_record(words, common_option_rows(), call->common, NULL);
+    orl_arguments_record(words, call->command->rows(), call->options);
+    orl_arguments_record(words, common_option_rows(), call->common);
     terminal_finish(call->terminal);
     enum orl_result result = script ? become(call->log, script, program, words, call->inputs)
                                     : ORL_ERR_NOT_FOUND;

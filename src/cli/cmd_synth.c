@@ -18,11 +18,12 @@
     ROW(size, "size", SIZE, "size of a photograph; default: 768x512, figures 640x480") \
     ORL_SYNTH_OPTIONS(ROW) \
     ROW(exposures, "exposures", LIST("EV,.."), \
-        "exposures, taken in turn, each photograph one; default: 0") \
+        "exposures, taken in turn, each photograph one; default: 0", "monument") \
     ROW(path, "path", TEXT("FILE"), \
-        "the monument from the views of this path, as of render --path, in place of a walk") \
+        "the monument from the views of this path, as of render --path, in place of a walk", "monument") \
     ORL_FIGURES_OPTIONS(ROW) \
-    ROW(live, "live", TEXT("DIR"), "figures: plays their pictures into the folders or pipes DIR/camNN too, 25 a second")
+    ROW(live, "live", TEXT("DIR"), "figures: plays their pictures into the folders or pipes DIR/camNN too, 25 a second", \
+        "figures")
 COMMAND_OPTIONS(synth_options, SYNTH_OPTIONS)
 
 static enum orl_result parse_exposures(const struct orl_log *log, const struct orl_names *names,
@@ -81,28 +82,13 @@ static enum orl_result make_monument(struct call *call, const struct orl_synth_p
     return result;
 }
 
-// True when an option of this set is not as it is by default.
-static bool has_given(const struct synth_options *o, const char *set)
-{
-    json_t *given = json_array(), *usual = json_array();
-    orl_arguments_record(given, synth_options_rows(), o, set);
-    orl_arguments_record(usual, synth_options_rows(), &synth_options_presets, set);
-    bool differ = !json_equal(given, usual);
-    json_decref(given);
-    json_decref(usual);
-    return differ;
-}
-
-// Refuses options that belong to the other set.
+// Refuses options that are another scene's.
 static enum orl_result check_options(const struct orl_log *log, const struct synth_options *o,
-                                     const char *name, bool is_figures)
+                                     const char *name, const char *others)
 {
-    if (is_figures && (has_given(o, "monument") || o->exposures.count || o->path))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "synth figures: takes --cameras, --frames and "
-                        "--size; the other options are the monument's");
-    if (!is_figures && (has_given(o, "figures") || o->live))
-        return orl_fail(log, ORL_ERR_ARGUMENT, "synth %s: --cameras, --frames and --live are those "
-                        "of figures", name);
+    for (const struct orl_option *row = synth_options_rows(); row->name; row++)
+        if (row->of && strcmp(row->of, others) == 0 && !orl_option_equal(row, o, &synth_options_presets))
+            return orl_fail(log, ORL_ERR_ARGUMENT, "synth %s: --%s is an option of %s", name, row->name, others);
     return ORL_OK;
 }
 
@@ -133,7 +119,7 @@ static enum orl_result run_synth(struct call *call)
         monument.height = figures.height = o->size.height;
     }
     ORL_TRY(parse_exposures(log, &o->exposures, &monument));
-    ORL_TRY(check_options(log, o, call->inputs[0], is_figures));
+    ORL_TRY(check_options(log, o, call->inputs[0], is_figures ? "monument" : "figures"));
     if (o->path) {
         ORL_TRY(orl_synth_check(log, &monument));
         ORL_TRY(read_path(log, o->path, &monument, &call->path));

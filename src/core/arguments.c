@@ -368,11 +368,10 @@ static const char *find_word(const char *of, const char *word)
     return NULL;
 }
 
-void orl_arguments_record(json_t *list, const struct orl_option *rows, const void *values,
-                        const char *of)
+void orl_arguments_record(json_t *list, const struct orl_option *rows, const void *values)
 {
     for (const struct orl_option *row = rows; row->name; row++) {
-        if (of ? !find_word(row->of, of) : find_word(row->of, "-") != NULL)
+        if (find_word(row->of, "-"))
             continue;
         json_t *text = text_of(row, values);
         if (text)

@@ -40,11 +40,9 @@ void orl_option_allowed(const struct orl_option *row, char text[ORL_OPTION_ALLOW
 // Numbers and bytes as such, else the text that is given; NULL: not given.
 json_t *orl_option_json(const struct orl_option *row, const void *values);
 
-// Appends "--name", "value" to a list for every value that was given or has a default, of the rows
-// whose `of` has the word; NULL: all that are recorded. The same arguments, parsed, give the same
-// values in any folder.
-void orl_arguments_record(json_t *list, const struct orl_option *rows, const void *values,
-                        const char *of);
+// Appends "--name", "value" to a list for every value that was given or has a default and is recorded. The same arguments,
+// parsed, give the same values in any folder.
+void orl_arguments_record(json_t *list, const struct orl_option *rows, const void *values);
 // Adds to `settings` the values that are part of the stage's key.
 void orl_arguments_settings(json_t *settings, const struct orl_option *rows, const void *values,
                           const char *stage);
