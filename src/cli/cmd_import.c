@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/summary.h"
+#include "cli/command_output.h"
 #include "core/memory.h"
 #include "preprocess/import.h"
 #include "scene/known_cameras.h"

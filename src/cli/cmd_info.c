@@ -3,7 +3,6 @@
 
 #include "cli/command.h"
 #include "cli/command_output.h"
-#include "cli/summary.h"
 #include "core/file.h"
 #include "core/json.h"
 #include "core/text.h"

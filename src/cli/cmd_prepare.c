@@ -1,7 +1,7 @@
 // oriel prepare: makes a scene from photographs.
 
 #include "cli/command.h"
-#include "cli/summary.h"
+#include "cli/command_output.h"
 #include "oriel/prepare.h"
 
 static enum orl_result run_prepare(struct call *call)

@@ -67,6 +67,8 @@ struct output_options {
 enum orl_result output_choose(const struct orl_log *log, struct output_options options,
                               bool confidence, struct orl_frame_output *output) ORL_CHECK_RESULT;
 
+// Prints counts, the stages with time and memory, and left-out photographs of DIR/scene.json to stdout.
+enum orl_result summary_print(const struct orl_log *log, const char *dir) ORL_CHECK_RESULT;
 // Writes a report to a file or, for "-", to stdout, and releases it. NULL: out of memory, or a figure
 // is no number.
 enum orl_result report_write(const struct orl_log *log, const char *path,

@@ -45,15 +45,8 @@ static void print_man_command(FILE *out, const struct command *command)
 {
     fprintf(out, ".SS \"oriel %s%s\"\n.B oriel %s%s\n", job_word(command), command->name,
             job_word(command), command->name);
-    for (const char *line = command->usage; *line; line += strspn(line, " \n")) {
-        size_t length = strcspn(line, "\n");
-        char text[256];
-        snprintf(text, sizeof text, "%.*s", (int)length, line);
-        print_man(out, text);
-        fprintf(out, "\n");
-        line += length;
-    }
-    fprintf(out, ".PP\n");
+    print_man(out, command->usage);
+    fprintf(out, "\n.PP\n");
     print_man(out, command->summary);
     fprintf(out, "\n");
     if (command->print_more) {

@@ -1,9 +1,9 @@
-#include "cli/summary.h"
-
+// A readable summary of a scene's manifest.
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 
+#include "cli/command_output.h"
 #include "core/file.h"
 #include "core/json.h"
 #include "core/text.h"
