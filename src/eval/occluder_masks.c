@@ -128,28 +128,26 @@ static enum orl_result contradict(const struct orl_log *log,
     static const struct orl_mask_cleaning no_specks = {.open_px = OPEN_PX};
     const struct orl_image *photo = &pictures->photo;
     size_t count = (size_t)photo->width * (size_t)photo->height;
-    enum { CONSENSUS, NEAREST, POINTS, RENDERINGS };
-    const struct orl_image *const renderings[] = {&pictures->consensus, &pictures->nearest, &pictures->points};
-    struct orl_image off[RENDERINGS] = {{0}}, like[POINTS] = {{0}}, rough[2] = {{0}, {0}};
+    struct orl_image off[ORL_OCCLUDER_RENDERINGS] = {{0}}, like[ORL_OCCLUDER_POINTS] = {{0}}, rough[2] = {{0}, {0}};
     enum orl_result result = ORL_OK;
-    for (int k = 0; result == ORL_OK && k < RENDERINGS; k++)
-        result = differ(log, renderings[k], pictures, &off[k]);
-    for (int k = 0; result == ORL_OK && k < POINTS; k++)
-        result = correlate(log, photo, renderings[k], &like[k]);
+    for (int k = 0; result == ORL_OK && k < ORL_OCCLUDER_RENDERINGS; k++)
+        result = differ(log, &pictures->rendered[k], pictures, &off[k]);
+    for (int k = 0; result == ORL_OK && k < ORL_OCCLUDER_POINTS; k++)
+        result = correlate(log, photo, &pictures->rendered[k], &like[k]);
     for (int k = 0; result == ORL_OK && k < 2; k++)
         result = orl_image_init(log, &rough[k], photo->width, photo->height, 1, ORL_PIXEL_U8);
     for (size_t i = 0; result == ORL_OK && i < count; i++) {
         bool surface = pictures->covered.f32[i] > 0;
         float least = surface ? surface_difference : guess_difference;
-        rough[0].u8[i] = length_of(off[CONSENSUS].f32 + 3 * i) > least ? 255 : 0;
-        bool proves = surface && length_of(off[NEAREST].f32 + 3 * i) > least &&
-                      length_of(off[POINTS].f32 + 3 * i) > least &&
-                      fmaxf(like[CONSENSUS].f32[i], like[NEAREST].f32[i]) < likeness_max;
+        rough[0].u8[i] = length_of(off[ORL_OCCLUDER_CONSENSUS].f32 + 3 * i) > least ? 255 : 0;
+        bool proves = surface && length_of(off[ORL_OCCLUDER_NEAREST].f32 + 3 * i) > least &&
+                      length_of(off[ORL_OCCLUDER_POINTS].f32 + 3 * i) > least &&
+                      fmaxf(like[ORL_OCCLUDER_CONSENSUS].f32[i], like[ORL_OCCLUDER_NEAREST].f32[i]) < likeness_max;
         rough[1].u8[i] = proves ? rough[0].u8[i] : 0;
     }
     ORL_THEN(result, orl_bridge_clean_mask(log, &rough[0], &no_specks, mask));
     ORL_THEN(result, orl_bridge_clean_mask(log, &rough[1], &no_specks, proof));
-    for (int k = 0; k < RENDERINGS; k++)
+    for (int k = 0; k < ORL_OCCLUDER_RENDERINGS; k++)
         orl_image_finish(&off[k]);
     for (int k = 0; k < 2; k++) {
         orl_image_finish(&like[k]);
@@ -235,7 +233,7 @@ struct finder {
     const struct orl_scene *scene;
     const struct orl_progress *progress;
     struct orl_renderer *renderer;
-    struct orl_render_params nearest, consensus, points;
+    struct orl_render_params params[ORL_OCCLUDER_RENDERINGS];
     struct orl_image *masks; // by photograph
     double *shares;
     struct orl_ranked *others; // owned: room for all photographs
@@ -271,20 +269,17 @@ static enum orl_result find_of(const struct finder *f, size_t photo, const bool 
     orl_image_finish(&f->masks[photo]);
     set_skip(f, photo, removed);
     enum orl_result result = orl_heldout_load(f->log, f->scene, photo, divide, &shot);
-    ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->nearest, f->skip, &pictures.nearest,
-                                      NULL));
-    ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->consensus, f->skip,
-                                      &pictures.consensus, &pictures.covered));
-    ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->points, f->skip, &pictures.points,
-                                      NULL));
+    for (int k = 0; k < ORL_OCCLUDER_RENDERINGS; k++)
+        ORL_THEN(result, orl_heldout_draw(f->log, f->renderer, f->scene, &shot, &f->params[k], f->skip,
+                                          &pictures.rendered[k],
+                                          k == ORL_OCCLUDER_CONSENSUS ? &pictures.covered : NULL));
     if (result == ORL_OK) {
         pictures.photo = shot.picture;
         result = orl_occluder_mask(f->log, &pictures, &f->masks[photo], &f->shares[photo]);
     }
     orl_image_finish(&pictures.covered);
-    orl_image_finish(&pictures.nearest);
-    orl_image_finish(&pictures.consensus);
-    orl_image_finish(&pictures.points);
+    for (int k = 0; k < ORL_OCCLUDER_RENDERINGS; k++)
+        orl_image_finish(&pictures.rendered[k]);
     orl_heldout_finish(&shot);
     return result;
 }
@@ -332,10 +327,9 @@ static enum orl_result set_params(struct finder *f)
     const struct orl_method *points = orl_method_find(f->log, "points");
     if (!oriel || !points)
         return ORL_ERR_NOT_FOUND;
-    f->points = points->params;
-    f->nearest = oriel->params;
-    f->consensus = f->nearest;
-    return orl_render_params_assign(f->log, &f->consensus, consensus, ORL_COUNT(consensus));
+    f->params[ORL_OCCLUDER_POINTS] = points->params;
+    f->params[ORL_OCCLUDER_NEAREST] = f->params[ORL_OCCLUDER_CONSENSUS] = oriel->params;
+    return orl_render_params_assign(f->log, &f->params[ORL_OCCLUDER_CONSENSUS], consensus, ORL_COUNT(consensus));
 }
 
 enum orl_result orl_occluders_find(struct orl_gpu *gpu, const struct orl_scene *scene,

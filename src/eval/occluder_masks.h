@@ -11,12 +11,12 @@
 // Longer side of the pictures that are compared, at most, and so that of masks, pixels.
 enum { ORL_OCCLUDERS_SIDE = 384 };
 
+// Renderings: the mean of all photographs that see a place, the best photographs of each pixel, and the points' own colours.
+enum { ORL_OCCLUDER_CONSENSUS, ORL_OCCLUDER_NEAREST, ORL_OCCLUDER_POINTS, ORL_OCCLUDER_RENDERINGS };
 // A photograph, and renderings of its view without it.
 struct orl_occluder_pictures {
-    struct orl_image photo;     // U8 x3, as are the next three, of the same size
-    struct orl_image consensus; // the mean of all that see a place
-    struct orl_image nearest;   // the best photographs of each pixel
-    struct orl_image points;    // the points' own colours
+    struct orl_image photo;     // U8 x3, as are the renderings, of the same size
+    struct orl_image rendered[ORL_OCCLUDER_RENDERINGS];
     struct orl_image covered;   // F32 x1: 1 where there is a surface
 };
 // The occluders of the photograph: regions in which it differs by much from the consensus, in square

@@ -28,7 +28,7 @@ static void fill(struct orl_image *image, const struct part *part, uint8_t value
 static struct orl_occluder_pictures make_pictures(void)
 {
     struct orl_occluder_pictures p;
-    struct orl_image *grey[] = {&p.photo, &p.consensus, &p.nearest, &p.points};
+    struct orl_image *grey[] = {&p.photo, &p.rendered[0], &p.rendered[1], &p.rendered[2]};
     for (int k = 0; k < 4; k++) {
         assert_int_equal(orl_image_init(NULL, grey[k], WIDTH, HEIGHT, 3, ORL_PIXEL_U8), ORL_OK);
         memset(grey[k]->u8, 160, orl_image_bytes(grey[k]));
@@ -42,9 +42,8 @@ static struct orl_occluder_pictures make_pictures(void)
 static void finish(struct orl_occluder_pictures *p)
 {
     orl_image_finish(&p->photo);
-    orl_image_finish(&p->consensus);
-    orl_image_finish(&p->nearest);
-    orl_image_finish(&p->points);
+    for (int k = 0; k < ORL_OCCLUDER_RENDERINGS; k++)
+        orl_image_finish(&p->rendered[k]);
     orl_image_finish(&p->covered);
 }
 
@@ -120,7 +119,7 @@ static void what_neighbours_show_too_is_no_occluder(void **state)
     (void)state;
     struct orl_occluder_pictures p = make_pictures();
     fill(&p.photo, &branch, 20);
-    fill(&p.nearest, &branch, 20);
+    fill(&p.rendered[ORL_OCCLUDER_NEAREST], &branch, 20);
     assert_float_equal(share_alone(&p), 0, 0);
 }
 
@@ -131,7 +130,7 @@ static void what_its_points_show_too_is_no_occluder(void **state)
     (void)state;
     struct orl_occluder_pictures p = make_pictures();
     fill(&p.photo, &branch, 20);
-    fill(&p.points, &branch, 40);
+    fill(&p.rendered[ORL_OCCLUDER_POINTS], &branch, 40);
     assert_float_equal(share_alone(&p), 0, 0);
 }
 
@@ -149,8 +148,8 @@ static struct orl_occluder_pictures make_bricks(void)
     static const struct part all = {0, 0, WIDTH, HEIGHT};
     struct orl_occluder_pictures p = make_pictures();
     add_stripes(&p.photo, &all, 140, 220);
-    add_stripes(&p.consensus, &all, 140, 220);
-    add_stripes(&p.nearest, &all, 140, 220);
+    add_stripes(&p.rendered[ORL_OCCLUDER_CONSENSUS], &all, 140, 220);
+    add_stripes(&p.rendered[ORL_OCCLUDER_NEAREST], &all, 140, 220);
     return p;
 }
 
