@@ -117,18 +117,15 @@ enum orl_result orl_choices_make(const struct orl_log *log, const struct orl_sce
     enum orl_result result = ORL_OK;
     struct orl_choice base;
     memset(choices, 0, sizeof *choices);
-    const struct orl_method *preset = NULL;
-    if (!all && !methods->count) {
-        preset = orl_method_find(log, orl_method_default(scene));
-        result = preset ? add_method(&wish, preset, choices) : ORL_ERR_FORMAT;
-    }
     for (const struct orl_method *m = orl_methods; result == ORL_OK && all && m->name; m++)
         result = add_method(&wish, m, choices);
-    for (size_t i = 0; result == ORL_OK && !all && i < methods->count; i++) {
-        if (paired && strcmp(methods->items[i], "paired") == 0)
+    const size_t named = all ? 0 : methods->count ? methods->count : 1;
+    for (size_t i = 0; result == ORL_OK && i < named; i++) {
+        const char *name = methods->count ? methods->items[i] : orl_method_default(scene);
+        if (paired && strcmp(name, "paired") == 0)
             continue;
-        const struct orl_method *method = orl_method_find(log, methods->items[i]);
-        result = method ? add_method(&wish, method, choices) : ORL_ERR_ARGUMENT;
+        const struct orl_method *method = orl_method_find(log, name);
+        result = method ? add_method(&wish, method, choices) : methods->count ? ORL_ERR_ARGUMENT : ORL_ERR_FORMAT;
     }
     if (result == ORL_OK && paired)
         result = make(&wish, &orl_methods[0], &base);

@@ -153,16 +153,10 @@ bool orl_pair_timing_above(const struct orl_pair_timing *timing, double limit)
     return log(timing->ratio / limit) > clear * timing->error;
 }
 
-bool orl_pair_timing_below(const struct orl_pair_timing *timing, double limit)
-{
-    return log(limit / timing->ratio) > clear * timing->error;
-}
-
 static bool is_settled(const struct orl_pair_timing_params *params,
                       const struct orl_pair_timing *timing)
 {
-    bool clear_of_limit = orl_pair_timing_above(timing, params->limit) ||
-                          orl_pair_timing_below(timing, params->limit);
+    bool clear_of_limit = fabs(log(timing->ratio / params->limit)) > clear * timing->error;
     bool precise = params->error <= 0 || timing->error <= params->error;
     return timing->rounds >= ORL_PAIR_ROUNDS_MIN && clear_of_limit && precise;
 }

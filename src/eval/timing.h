@@ -80,8 +80,7 @@ struct orl_pair_timing {
 
 enum orl_result orl_pair_timing_take(const struct orl_pair_timing_params *params,
                                      struct orl_pair_timing *timing) ORL_CHECK_RESULT;
-// Whether the ratio is clearly on that side of the limit: by three standard errors.
+// Whether the ratio is clearly above the limit: by three standard errors.
 bool orl_pair_timing_above(const struct orl_pair_timing *timing, double limit);
-bool orl_pair_timing_below(const struct orl_pair_timing *timing, double limit);
 
 #endif
