@@ -8,7 +8,6 @@
 #include "bridge/bridge.h"
 #include "core/file.h"
 #include "core/memory.h"
-#include "eval/flip.h"
 #include "eval/heldout.h"
 #include "io/picture.h"
 

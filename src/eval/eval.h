@@ -19,7 +19,7 @@ struct orl_eval_view {
     struct orl_radiance_metrics radiance; // only with a truth
     struct orl_part_metrics vehicle;     // only with one in the truth
     double render_ms, cpu_ms; // medians over frames, see timing.h; 0: not rendered here
-    double flip;              // see flip.h
+    double flip;              // see orl_flip_compare
 };
 
 struct orl_eval {

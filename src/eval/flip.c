@@ -1,11 +1,10 @@
 // Sections and equations refer to Andersson et al. 2020.
-#include "eval/flip.h"
-
 #include <math.h>
 #include <stdlib.h>
 
 #include "core/color.h"
 #include "core/memory.h"
+#include "eval/metrics.h"
 
 // A screen 0.7 m and 3840 pixels wide at a distance of 0.7 m.
 static const double pixels_per_degree = 0.7 * 3840 / 0.7 * 3.14159265358979323846 / 180;

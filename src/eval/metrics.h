@@ -31,6 +31,11 @@ enum orl_result orl_metrics_of_part(const struct orl_log *log, const struct orl_
                                     const struct orl_image *b, const struct orl_image *coverage,
                                     const struct orl_image *part,
                                     struct orl_part_metrics *metrics) ORL_CHECK_RESULT;
+// FLIP: how large the difference of two pictures looks to a person who flips between them. LDR-FLIP of Andersson et al. 2020
+// ("FLIP: A Difference Evaluator for Alternating Images"), at 67 pixels per degree of visual angle as in the authors' program.
+// a, b: U8 x3, sRGB, of one size. *mean: over all pixels, 0 (equal) to 1. Symmetric in a and b.
+enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_image *a,
+                                 const struct orl_image *b, double *mean) ORL_CHECK_RESULT;
 // In dB of `peak`, at most 100, from a sum of squared errors.
 double orl_psnr_db(double squared_error, double count, double peak);
 // psnr_db alone, and ssim alone.

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "eval/flip.h"
+#include "eval/metrics.h"
 
 typedef int pattern(int x, int y, int c);
 
