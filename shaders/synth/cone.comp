@@ -1,12 +1,6 @@
 // Finds how far the rays of an 8x8 tile may go before any of them can meet a surface, by tracing
 // one cone around the tile. The pixels of the tile then need only a few steps.
 layout(local_size_x = 8, local_size_y = 8) in;
-#include "synth/view.glsl"
-#include "synth/noise.glsl"
-#include "synth/primitives.glsl"
-#include "synth/monument.glsl"
-#include "synth/vehicle.glsl"
-#include "synth/town.glsl"
 #include "synth/trace.glsl"
 layout(r32f, binding = 0) writeonly uniform image2D start_image;
 

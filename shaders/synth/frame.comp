@@ -1,12 +1,6 @@
 // Draws one synthetic photograph with its ground truth: linear radiance averaged over the pixel,
 // and depth (z in camera space, 0: sky) and normal (camera frame) at its centre.
 layout(local_size_x = 8, local_size_y = 8) in;
-#include "synth/view.glsl"
-#include "synth/noise.glsl"
-#include "synth/primitives.glsl"
-#include "synth/monument.glsl"
-#include "synth/vehicle.glsl"
-#include "synth/town.glsl"
 #include "synth/trace.glsl"
 #include "synth/material.glsl"
 #include "synth/light.glsl"

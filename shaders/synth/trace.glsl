@@ -1,4 +1,11 @@
-// Intersects rays with the scene. Needs solids().
+// Intersects rays with the scene.
+#include "synth/view.glsl"
+#include "synth/noise.glsl"
+#include "synth/primitives.glsl"
+#include "synth/monument.glsl"
+#include "synth/vehicle.glsl"
+#include "synth/town.glsl"
+
 const float FAR_T = 120.0;
 const int TRACE_STEPS = 160;
 // Greatest distance of a hit from the true surface, relative to depth.
