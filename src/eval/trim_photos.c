@@ -14,65 +14,42 @@ enum {
 // Views beside a photograph that goes may change by as much as renderings there are wrong anyway.
 static const double between_max_db = 3;
 
-static double apart(const struct trim_search *s, size_t a, size_t b)
-{
-    return orl_validation_apart(s->scene, s->targets.views[a].photo,
-                                s->targets.views[b].photo);
-}
-
-// The target nearest to another one, but not `but`, of those whose photographs are removed or of those
-// whose are left; the number of targets: there is none.
-static size_t nearest(const struct trim_search *s, const bool *removed, bool is_removed, size_t target, size_t but)
-{
-    size_t found = s->targets.count;
-    double least = INFINITY;
-    for (size_t i = 0; i < s->targets.count; i++) {
-        if (i == target || i == but || removed[s->targets.views[i].photo] != is_removed || apart(s, target, i) >= least)
-            continue;
-        least = apart(s, target, i);
-        found = i;
-    }
-    return found;
-}
-
-// The targets nearest to a target whose photographs are left, the nearest first.
+// The training photographs nearest to a photograph that are left, the nearest first.
 struct neighbours {
-    size_t target[NEAREST]; // the number of targets: there are fewer
-    double sum;             // of their distances
+    size_t photo[NEAREST]; // the scene's photo_count: there are fewer
+    double sum;            // of their distances
 };
 
-static struct neighbours nearest_left(const struct trim_search *s, const bool *removed,
-                                      size_t target)
+static struct neighbours nearest_left(const struct orl_scene *scene, const bool *removed, size_t photo)
 {
-    struct neighbours n = {.target = {target, target}};
+    struct neighbours n = {.photo = {photo, photo}};
     for (int k = 0; k < NEAREST; k++) {
-        n.target[k] = nearest(s, removed, false, target, n.target[0]);
-        n.sum += n.target[k] < s->targets.count ? apart(s, target, n.target[k]) : INFINITY;
+        n.photo[k] = orl_validation_nearest(scene, photo, removed, false, n.photo[0]);
+        n.sum += n.photo[k] < scene->photo_count ? orl_validation_apart(scene, photo, n.photo[k]) : INFINITY;
     }
     return n;
 }
 
 enum orl_result orl_trim_order_photos(struct trim_search *s)
 {
-    const struct orl_log *log = s->log;
-    size_t n = s->targets.count;
-    bool *removed = orl_array(log, s->scene->photo_count, sizeof *removed);
-    struct neighbours *near = orl_array(log, n, sizeof *near);
-    s->order = orl_array(log, n, sizeof *s->order);
+    const struct orl_scene *scene = s->scene;
+    const size_t n = scene->photo_count;
+    bool *removed = orl_array(s->log, n, sizeof *removed);
+    struct neighbours *near = orl_array(s->log, n, sizeof *near);
+    s->order = orl_array(s->log, s->targets.count, sizeof *s->order);
     enum orl_result result = removed && near && s->order ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < n; i++)
-        near[i] = nearest_left(s, removed, i);
-    for (size_t k = 0; result == ORL_OK && k < n; k++) {
+        near[i] = nearest_left(scene, removed, i);
+    for (size_t k = 0; result == ORL_OK && k < s->targets.count; k++) {
         size_t next = n;
         for (size_t i = 0; i < n; i++)
-            if (!removed[s->targets.views[i].photo] &&
-                (next == n || near[i].sum < near[next].sum))
+            if (!removed[i] && !scene->photos[i].test && (next == n || near[i].sum < near[next].sum))
                 next = i;
-        removed[s->targets.views[next].photo] = true;
+        removed[next] = true;
         s->order[k] = next;
         for (size_t i = 0; i < n; i++)
-            if (near[i].target[0] == next || near[i].target[1] == next)
-                near[i] = nearest_left(s, removed, i);
+            if (near[i].photo[0] == next || near[i].photo[1] == next)
+                near[i] = nearest_left(scene, removed, i);
     }
     free(removed);
     free(near);
@@ -85,13 +62,13 @@ enum orl_result orl_trim_order_photos(struct trim_search *s)
 // difference adds to the squared error that a rendering there has anyway, which is taken to be that
 // of the photograph's own view.
 static enum orl_result between_loss(struct trim_search *s, const bool *removed, size_t target,
-                                    size_t other, double *loss_db)
+                                    size_t photo, double *loss_db)
 {
     struct orl_renderer *renderer = orl_trim_model_of(s->now)->renderer;
     const struct orl_render_params *render = &s->now->render;
     struct orl_heldout between = s->targets.views[target];
     struct orl_image with = {0}, without = {0};
-    between.view = orl_view_interpolate(&between.view, &s->targets.views[other].view, 0.5);
+    between.view = orl_view_interpolate(&between.view, &s->scene->photos[photo].view, 0.5);
     if (orl_progress_cancelled(s->params->progress))
         return ORL_ERR_CANCELLED;
     enum orl_result result = orl_heldout_draw(s->log, renderer, &s->targets.scene, &between, render, NULL, &with, NULL);
@@ -117,10 +94,10 @@ static enum orl_result put_back_beside(struct trim_search *s, struct trim_state 
         double loss = 0;
         if (!state->removed[photo])
             continue;
-        struct neighbours near = nearest_left(s, state->removed, i);
+        struct neighbours near = nearest_left(s->scene, state->removed, photo);
         for (int k = 0; k < NEAREST && loss <= between_max_db; k++)
-            if (near.target[k] < s->targets.count)
-                ORL_TRY(between_loss(s, state->removed, i, near.target[k], &loss));
+            if (near.photo[k] < s->scene->photo_count)
+                ORL_TRY(between_loss(s, state->removed, i, near.photo[k], &loss));
         if (loss > between_max_db)
             put_back(state, photo);
     }
@@ -133,10 +110,10 @@ static bool mend(const struct trim_search *s, struct trim_state *t)
 {
     bool mended = false;
     for (size_t v = 0; v < t->score.count; v++) {
-        size_t near = nearest(s, t->removed, true, v, v);
-        if (near == s->targets.count || t->score.views[v][0] >= s->first->score.views[v][0] - s->most.worst_db)
+        size_t photo = s->targets.views[v].photo, near = orl_validation_nearest(s->scene, photo, t->removed, true, photo);
+        if (near == s->scene->photo_count || t->score.views[v][0] >= s->first->score.views[v][0] - s->most.worst_db)
             continue;
-        put_back(t, s->targets.views[near].photo);
+        put_back(t, near);
         mended = true;
     }
     if (mended)
@@ -149,7 +126,7 @@ enum orl_result orl_trim_remove_photos(struct trim_search *s, size_t count, stru
     memset(t->removed, 0, s->scene->photo_count * sizeof *t->removed);
     t->removed_count = count;
     for (size_t k = 0; k < count; k++)
-        t->removed[s->targets.views[s->order[k]].photo] = true;
+        t->removed[s->order[k]] = true;
     ORL_TRY(put_back_beside(s, t));
     ORL_TRY(orl_trim_measure(s, t));
     for (int i = 0; i < MENDS_MAX && mend(s, t); i++)

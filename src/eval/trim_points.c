@@ -55,21 +55,6 @@ static struct orl_view drawn_size(const struct orl_view *view)
     return small;
 }
 
-// The other training photograph that is most nearly there; photo_count: there is none.
-static size_t neighbour(const struct orl_scene *scene, size_t photo)
-{
-    double least = INFINITY;
-    size_t found = scene->photo_count;
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        double apart = orl_validation_apart(scene, i, photo);
-        if (i != photo && !scene->photos[i].test && apart < least) {
-            least = apart;
-            found = i;
-        }
-    }
-    return found;
-}
-
 static enum orl_result choose_views(const struct orl_log *log, const struct orl_scene *scene,
                                     size_t most, struct ranker *r)
 {
@@ -79,7 +64,7 @@ static enum orl_result choose_views(const struct orl_log *log, const struct orl_
         if (!orl_heldout_chosen(scene, false, (most + 1) / 2, i))
             continue;
         struct orl_view view = drawn_size(&scene->photos[i].view);
-        size_t other = neighbour(scene, i);
+        size_t other = orl_validation_nearest(scene, i, NULL, false, i);
         r->views[r->view_count++] = view;
         if (other < scene->photo_count)
             r->views[r->view_count++] = orl_view_interpolate(&view, &scene->photos[other].view, 0.5);

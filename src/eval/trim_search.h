@@ -69,7 +69,7 @@ struct trim_search {
     struct orl_validation targets;
     size_t validation_count; // targets that look at a step first
     size_t deciding_count;   // targets that decide on it then, with these
-    size_t *order;           // owned: targets in the order in which their photographs go
+    size_t *order;           // owned: photographs in the order in which they go
     struct orl_score_loss most; // the tolerances at this time; they grow towards a budget
     struct trim_state *first, *now; // owned, with all between them
     struct orl_render_params tuned; // options that may serve better

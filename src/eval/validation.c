@@ -104,6 +104,23 @@ double orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b)
     return distance + angle;
 }
 
+size_t orl_validation_nearest(const struct orl_scene *scene, size_t photo, const bool *removed, bool is_removed,
+                              size_t but)
+{
+    double least = INFINITY;
+    size_t found = scene->photo_count;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        if (i == photo || i == but || scene->photos[i].test || (removed && removed[i]) != is_removed)
+            continue;
+        const double apart = orl_validation_apart(scene, photo, i);
+        if (apart < least) {
+            least = apart;
+            found = i;
+        }
+    }
+    return found;
+}
+
 bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b)
 {
     double distance, angle;

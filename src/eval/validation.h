@@ -30,6 +30,10 @@ void orl_validation_finish(struct orl_validation *validation);
 // How far apart two photographs are: the distance of their centres as a share of the distance to
 // what they see, and the angle between their directions, added up.
 double orl_validation_apart(const struct orl_scene *scene, size_t a, size_t b);
+// The training photograph nearest to another one, but not `but`, of those that `removed` marks or, unless is_removed, does not
+// mark (NULL: it marks none). photo_count: there is none.
+size_t orl_validation_nearest(const struct orl_scene *scene, size_t photo, const bool *removed, bool is_removed,
+                              size_t but);
 // True when photograph b stands where a stands and looks where a looks, as repeated photographs
 // and exposure series do. Rendering the view of one from the other would tell nothing.
 bool orl_validation_same_place(const struct orl_scene *scene, size_t a, size_t b);
