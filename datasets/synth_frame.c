@@ -30,14 +30,6 @@ struct orl_synth {
     struct orl_tex *start, *radiance, *truth;
 };
 
-static enum orl_result create_target(struct orl_gpu *gpu, const char *tag, int width, int height,
-                                     GLenum format, struct orl_tex **out)
-{
-    struct orl_tex_params params = {.width = width, .height = height, .format = format,
-                                    .tag = tag};
-    return orl_tex_create(gpu, &params, out);
-}
-
 enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_params *params,
                                  struct orl_synth **out)
 {
@@ -51,12 +43,13 @@ enum orl_result orl_synth_create(struct orl_gpu *gpu, const struct orl_synth_par
              params->contrast_ev > 0 ? "HIGH_CONTRAST 1\n" : "",
              params->gloss > 0 ? "GLOSS 1\n" : "", params->bars_m > 0 ? "BARS 1\n" : "",
              params->plain > 0 ? "PLAIN 1\n" : "", params->vehicle ? "VEHICLE 1\n" : "");
-    int tiles_x = (params->width + TILE - 1) / TILE, tiles_y = (params->height + TILE - 1) / TILE;
-    enum orl_result result = create_target(gpu, "synth start", tiles_x, tiles_y, GL_R32F, &synth->start);
-    ORL_THEN(result, create_target(gpu, "synth radiance", params->width, params->height, GL_RGBA32F,
-                                   &synth->radiance));
-    ORL_THEN(result, create_target(gpu, "synth truth", params->width, params->height, GL_RGBA32F,
-                                   &synth->truth));
+    const int width = params->width, height = params->height;
+    const struct orl_tex_params start = {.width = (width + TILE - 1) / TILE, .height = (height + TILE - 1) / TILE,
+                                         .format = GL_R32F, .tag = "synth start"};
+    const struct orl_tex_params pixels = {.width = width, .height = height, .format = GL_RGBA32F, .tag = "synth pixels"};
+    enum orl_result result = orl_tex_create(gpu, &start, &synth->start);
+    ORL_THEN(result, orl_tex_create(gpu, &pixels, &synth->radiance));
+    ORL_THEN(result, orl_tex_create(gpu, &pixels, &synth->truth));
     if (result == ORL_OK)
         *out = synth;
     else

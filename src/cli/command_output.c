@@ -14,20 +14,17 @@ const char *output_tone_name(size_t index)
 static enum orl_result choose_layers(const struct orl_log *log, const struct orl_names *names,
                                      bool confidence, struct orl_frame_layers *layers)
 {
+    static const char *const known[] = {"depth", "normal", "coverage", "confidence"};
+    bool *const chosen[] = {&layers->depth, &layers->normal, &layers->coverage, &layers->confidence};
+    const size_t count = ORL_COUNT(known) - !confidence;
     for (size_t i = 0; i < names->count; i++) {
-        const char *name = names->items[i];
-        if (strcmp(name, "depth") == 0)
-            layers->depth = true;
-        else if (strcmp(name, "normal") == 0)
-            layers->normal = true;
-        else if (strcmp(name, "coverage") == 0)
-            layers->coverage = true;
-        else if (confidence && strcmp(name, "confidence") == 0)
-            layers->confidence = true;
-        else
-            return orl_fail(log, ORL_ERR_ARGUMENT,
-                            "--layers %s: must be of depth, normal, coverage%s", name,
-                            confidence ? ", confidence" : "");
+        size_t k = 0;
+        while (k < count && strcmp(names->items[i], known[k]) != 0)
+            k++;
+        if (k == count)
+            return orl_fail(log, ORL_ERR_ARGUMENT, "--layers %s: must be of depth, normal, coverage%s",
+                            names->items[i], confidence ? ", confidence" : "");
+        *chosen[k] = true;
     }
     return ORL_OK;
 }
