@@ -101,32 +101,31 @@ static bool get_table(sqlite3_stmt *statement, int column, size_t value_size, st
     return size == table->rows * table->columns * value_size;
 }
 
-static enum orl_result take_largest(const struct orl_database *db, const struct table *keypoints,
-                                    const struct table *all, size_t limit, uint8_t **descriptors,
-                                    size_t *count)
+// Copies the `limit` features of largest scale; 0: all, in COLMAP's order.
+static enum orl_result take(const struct orl_database *db, const struct table *keypoints, const struct table *all,
+                            size_t limit, struct orl_features *features)
 {
     struct orl_ranked *order = orl_array(db->log, all->rows, sizeof *order);
-    size_t kept = all->rows < limit ? all->rows : limit;
-    uint8_t *out = orl_array(db->log, kept, ORL_SIFT_SIZE);
-    if (!order || !out) {
+    size_t kept = limit && limit < all->rows ? limit : all->rows;
+    features->descriptors = orl_array(db->log, kept, ORL_SIFT_SIZE);
+    if (!order || !features->descriptors) {
         free(order);
-        free(out);
         return ORL_ERR_MEMORY;
     }
     for (size_t i = 0; i < all->rows; i++) {
         float keypoint[6];
         memcpy(keypoint, (const float *)keypoints->data + i * keypoints->columns,
                keypoints->columns * sizeof *keypoint);
-        float scale = scale_of(keypoint, keypoints->columns);
+        float scale = limit ? scale_of(keypoint, keypoints->columns) : 0;
         order[i] = (struct orl_ranked){isfinite(scale) ? -(double)scale : 0, i};
     }
     qsort(order, all->rows, sizeof *order, orl_order_ranked);
     for (size_t i = 0; i < kept; i++)
-        memcpy(out + i * ORL_SIFT_SIZE,
+        memcpy(features->descriptors + i * ORL_SIFT_SIZE,
                (const uint8_t *)all->data + order[i].index * ORL_SIFT_SIZE, ORL_SIFT_SIZE);
     free(order);
-    *descriptors = out;
-    *count = kept;
+    features->id = (uint32_t)sqlite3_column_int64(db->features, 6);
+    features->count = kept;
     return ORL_OK;
 }
 
@@ -148,33 +147,13 @@ static enum orl_result find_features(struct orl_database *db, const char *name,
     return orl_fail(db->log, ORL_ERR_FORMAT, "%s: the features of %s are damaged", db->path, name);
 }
 
-enum orl_result orl_database_descriptors(struct orl_database *db, const char *name, size_t limit,
-                                         uint8_t **descriptors, size_t *count)
-{
-    struct table keypoints = {0}, all = {0};
-    *descriptors = NULL;
-    *count = 0;
-    enum orl_result result = find_features(db, name, &keypoints, &all);
-    if (result == ORL_OK && all.rows)
-        result = take_largest(db, &keypoints, &all, limit, descriptors, count);
-    sqlite3_reset(db->features);
-    return result;
-}
-
-enum orl_result orl_database_features(struct orl_database *db, const char *name,
+enum orl_result orl_database_features(struct orl_database *db, const char *name, size_t limit,
                                       struct orl_features *features)
 {
     struct table keypoints = {0}, all = {0};
     *features = (struct orl_features){0};
     enum orl_result result = find_features(db, name, &keypoints, &all);
-    if (result == ORL_OK && !(features->descriptors = orl_array(db->log, all.rows, ORL_SIFT_SIZE)))
-        result = ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
-        features->id = (uint32_t)sqlite3_column_int64(db->features, 6);
-        features->count = all.rows;
-        if (all.rows)
-            memcpy(features->descriptors, all.data, all.rows * ORL_SIFT_SIZE);
-    }
+    ORL_THEN(result, take(db, &keypoints, &all, limit, features));
     sqlite3_reset(db->features);
     return result;
 }

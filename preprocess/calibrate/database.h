@@ -10,17 +10,9 @@ struct orl_database;
 enum orl_result orl_database_open(const struct orl_log *log, const char *path,
                                   struct orl_database **db) ORL_CHECK_RESULT;
 void orl_database_close(struct orl_database **db);
-// Descriptors of the `limit` features of largest scale of the photograph `name`, the largest first:
-// *descriptors is released with free(). Without features *count is 0.
-enum orl_result orl_database_descriptors(struct orl_database *db, const char *name, size_t limit,
-                                         uint8_t **descriptors, size_t *count) ORL_CHECK_RESULT;
-// All features of a photograph, in COLMAP's order.
-struct orl_features {
-    uint32_t id;          // COLMAP's, of the photograph; 0: not read
-    uint8_t *descriptors; // owned
-    size_t count;
-};
-enum orl_result orl_database_features(struct orl_database *db, const char *name,
+// The `limit` features of largest scale of the photograph `name`, the largest first; 0: all, in COLMAP's
+// order.
+enum orl_result orl_database_features(struct orl_database *db, const char *name, size_t limit,
                                       struct orl_features *features) ORL_CHECK_RESULT;
 // Makes photographs with fewer features than `least` ones without any.
 enum orl_result orl_database_drop_features(struct orl_database *db, int least) ORL_CHECK_RESULT;

@@ -6,12 +6,12 @@
 #include "core/memory.h"
 #include "core/process.h"
 #include "preprocess/calibrate/pairs.h"
-#include "preprocess/calibrate/raw_matches.h"
 #include "preprocess/job/colmap_run.h"
+#include "preprocess/job/threads.h"
 
 enum {
     EXHAUSTIVE_MAX = 25,                      // photographs up to which auto matches all pairs
-    FEATURES = 2 * ORL_PREEMPT_FEATURES,      // of a photograph, for choosing pairs
+    FEATURES = 2 * ORL_PAIR_FEATURES,         // of a photograph, for choosing pairs
     RUN_PAIRS = 64,                           // pairs whose features are in memory at once
     NEIGHBOURS = 20,                          // by name, on either side, that sequential matches
 };
@@ -22,6 +22,83 @@ enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs)
     if (asked != ORL_MATCHING_AUTO)
         return asked;
     return photographs <= EXHAUSTIVE_MAX ? ORL_MATCHING_EXHAUSTIVE : ORL_MATCHING_RETRIEVAL;
+}
+
+enum orl_result orl_match_open_database(const struct orl_job *job, const char *name,
+                                        struct orl_database **db)
+{
+    return orl_database_open(job->log, ORL_PATH(job->dir, "%s", name), db);
+}
+
+// --- Oriel's own matching, on the CPU ---
+
+struct found {
+    struct orl_sift_matches matches;
+    bool there; // in the database already
+};
+
+struct matching {
+    const struct orl_job *job;
+    const struct orl_pair *pairs;
+    size_t count;
+    struct orl_features *features; // owned; of each source: those of the pairs are filled
+    struct found *found;           // owned; of each pair
+};
+
+static enum orl_result match_pair(void *priv, size_t index)
+{
+    const struct matching *m = priv;
+    const struct orl_pair *pair = &m->pairs[index];
+    return m->found[index].there ? ORL_OK
+                                 : orl_sift_match(&m->features[pair->a], &m->features[pair->b], SIZE_MAX,
+                                                  &m->found[index].matches);
+}
+
+static enum orl_result read_features(const struct matching *m, struct orl_database *db)
+{
+    for (size_t i = 0; i < m->count; i++) {
+        const uint32_t ends[] = {m->pairs[i].a, m->pairs[i].b};
+        for (int k = 0; k < 2; k++)
+            if (!m->features[ends[k]].id)
+                ORL_TRY(orl_database_features(db, m->job->sources[ends[k]].name, 0, &m->features[ends[k]]));
+        ORL_TRY(orl_database_has_matches(db, m->features[ends[0]].id, m->features[ends[1]].id,
+                                         &m->found[i].there));
+    }
+    return ORL_OK;
+}
+
+static enum orl_result write_matches(const struct matching *m, struct orl_database *db)
+{
+    enum orl_result result = orl_database_begin(db);
+    for (size_t i = 0; result == ORL_OK && i < m->count; i++)
+        if (!m->found[i].there)
+            result = orl_database_write_matches(db, m->features[m->pairs[i].a].id, m->features[m->pairs[i].b].id,
+                                                m->found[i].matches.items, m->found[i].matches.count);
+    return result == ORL_OK ? orl_database_commit(db) : result;
+}
+
+enum orl_result orl_match_features(const struct orl_job *job, struct orl_database *db,
+                                   const struct orl_pair_list *list, size_t first, size_t count)
+{
+    struct matching m = {.job = job, .pairs = list->items + first, .count = count};
+    m.features = orl_array(job->log, job->source_count, sizeof *m.features);
+    m.found = orl_array(job->log, count, sizeof *m.found);
+    enum orl_result result = m.features && m.found ? read_features(&m, db) : ORL_ERR_MEMORY;
+    if (result == ORL_OK) {
+        result = orl_threads_each(&(struct orl_each){
+            .work = match_pair, .priv = &m, .count = count, .progress = job->progress, .step = "matching",
+            .done = (double)first, .share = (1 - VERIFYING) * (double)count, .total = (double)list->count});
+        if (result == ORL_ERR_MEMORY)
+            orl_logf(job->log, ORL_LOG_ERROR, "no memory to match features");
+    }
+    ORL_THEN(result, write_matches(&m, db));
+    for (size_t i = 0; m.features && i < job->source_count; i++)
+        free(m.features[i].descriptors);
+    for (size_t i = 0; m.found && i < count; i++)
+        free(m.found[i].matches.items);
+    free(m.features);
+    free(m.found);
+    return result;
 }
 
 // --- matching a list of pairs ---
@@ -52,12 +129,6 @@ static enum orl_result name_pairs(const struct orl_job *job, const struct orl_pa
     return result;
 }
 
-enum orl_result orl_match_open_database(const struct orl_job *job, const char *name,
-                                        struct orl_database **db)
-{
-    return orl_database_open(job->log, ORL_PATH(job->dir, "%s", name), db);
-}
-
 static enum orl_result hide_spaces(const struct orl_job *job, const char *database, bool hide)
 {
     struct orl_database *db;
@@ -70,17 +141,10 @@ static enum orl_result hide_spaces(const struct orl_job *job, const char *databa
 static enum orl_result match_features(const struct orl_job *job, const char *database,
                                       const struct orl_pair_list *list, size_t first, size_t count)
 {
-    struct orl_database *db = NULL;
-    const char **names = orl_array(job->log, job->source_count, sizeof *names);
-    enum orl_result result = names ? orl_match_open_database(job, database, &db) : ORL_ERR_MEMORY;
-    for (size_t i = 0; names && i < job->source_count; i++)
-        names[i] = job->sources[i].name;
-    ORL_THEN(result, orl_raw_matches_write(job->log, &(struct orl_each){
-                .progress = job->progress, .done = (double)first,
-                .share = (1 - VERIFYING) * (double)count, .total = (double)list->count}, db, names,
-                job->source_count, list->items + first, count));
+    struct orl_database *db;
+    enum orl_result result = orl_match_open_database(job, database, &db);
+    ORL_THEN(result, orl_match_features(job, db, list, first, count));
     orl_database_close(&db);
-    free(names);
     return result;
 }
 
@@ -133,13 +197,11 @@ static enum orl_result read_photos(const struct orl_job *job, const char *databa
     enum orl_result result = orl_match_open_database(job, database, &db);
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         const struct orl_exif *exif = &job->sources[i].exif;
-        uint8_t *data;
-        size_t count;
-        result = orl_database_descriptors(db, job->sources[i].name, FEATURES, &data, &count);
         photos[i] = (struct orl_pair_photo){
-            .descriptors = {data, count}, .taken_s = exif->taken_s > 0 ? exif->taken_s : NAN,
+            .taken_s = exif->taken_s > 0 ? exif->taken_s : NAN,
             .latitude = exif->placed ? exif->latitude : NAN,
             .longitude = exif->placed ? exif->longitude : NAN};
+        result = orl_database_features(db, job->sources[i].name, FEATURES, &photos[i].features);
     }
     orl_database_close(&db);
     return result;
@@ -157,7 +219,7 @@ enum orl_result orl_match_choose(struct orl_job *job, const char *database,
     ORL_THEN(result, orl_pairs_choose(job->log, job->progress, photos, job->source_count,
                                       job->params->seed, list));
     for (size_t i = 0; i < job->source_count; i++)
-        free((void *)photos[i].descriptors.data);
+        free(photos[i].features.descriptors);
     free(photos);
     if (result == ORL_OK) {
         orl_progress_report(job->progress, "pairs", 1, 1, NULL);

@@ -30,6 +30,11 @@ enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guide
 enum orl_result orl_match_choose(struct orl_job *job, const char *database,
                                  struct orl_pair_list *list,
                                  struct orl_match_summary *summary) ORL_CHECK_RESULT;
+// Writes Oriel's own matches of `count` pairs of the list, from `first` on, into the database. Pairs that
+// have matches keep them. The features of all photographs of the pairs are in memory at once.
+enum orl_result orl_match_features(const struct orl_job *job, struct orl_database *db,
+                                   const struct orl_pair_list *list, size_t first,
+                                   size_t count) ORL_CHECK_RESULT;
 // Matches these pairs and has COLMAP verify the matches, in `database`, a name below the scene; guided: as above.
 enum orl_result orl_match_list(struct orl_job *job, const char *database, bool guided,
                                const struct orl_pair_list *list) ORL_CHECK_RESULT;

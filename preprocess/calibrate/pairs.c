@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "preprocess/calibrate/vlad.h"
+#include "preprocess/job/threads.h"
 
 enum {
     CANDIDATE = 4,    // matches that make a pair a candidate (the limit of Wu 2013 for 100 features)
@@ -19,6 +20,12 @@ enum {
 };
 static const double SOON_S = 60; // photographs in succession within this time are matched
 
+// A pair that was tried.
+struct trial {
+    uint32_t a, b;
+    int matches;
+};
+
 // A pair as one of its photographs sees it.
 struct link {
     uint32_t from, to;
@@ -31,9 +38,8 @@ struct choice {
     const struct orl_progress *progress;
     const struct orl_pair_photo *photos;
     size_t count;
-    struct orl_descriptors *descriptors; // owned; of the photographs
-    float *vectors;                      // owned; orl_vlad
-    struct orl_preempt_pair *pairs;      // owned; tried, in order of a, then b
+    float *vectors;      // owned; orl_vlad
+    struct trial *pairs; // owned; in order of a, then b
     size_t pair_count, capacity;
     struct link *links;  // owned; each pair twice, in order of `from`, the best first
     size_t *first_link;  // owned; of each photograph, and the end
@@ -45,10 +51,10 @@ struct choice {
 
 // --- which pairs to try ---
 
-static struct orl_preempt_pair *find_pair(const struct choice *c, size_t count, uint32_t a,
+static struct trial *find_pair(const struct choice *c, size_t count, uint32_t a,
                                           uint32_t b)
 {
-    struct orl_preempt_pair key = {a < b ? a : b, a < b ? b : a, 0};
+    struct trial key = {a < b ? a : b, a < b ? b : a, 0};
     return count ? bsearch(&key, c->pairs, count, sizeof key, orl_order_pairs) : NULL;
 }
 
@@ -58,14 +64,33 @@ static enum orl_result propose(struct choice *c, size_t tried, uint32_t a, uint3
     if (a == b || find_pair(c, tried, a, b))
         return ORL_OK;
     ORL_TRY(ORL_GROW(c->log, c->pairs, c->capacity, c->pair_count));
-    c->pairs[c->pair_count++] = (struct orl_preempt_pair){a < b ? a : b, a < b ? b : a, 0};
+    c->pairs[c->pair_count++] = (struct trial){a < b ? a : b, a < b ? b : a, 0};
     return ORL_OK;
+}
+
+struct trying {
+    const struct orl_pair_photo *photos;
+    struct trial *proposed;
+};
+
+// Preemptive matching (Wu 2013, "Towards linear-time incremental structure from motion", 3): the few
+// features of largest scale of two photographs tell whether all of them are worth matching.
+static enum orl_result try_one(void *priv, size_t index)
+{
+    const struct trying *t = priv;
+    struct trial *trial = &t->proposed[index];
+    struct orl_sift_matches matches;
+    enum orl_result result = orl_sift_match(&t->photos[trial->a].features, &t->photos[trial->b].features,
+                                            ORL_PAIR_FEATURES, &matches);
+    trial->matches = (int)matches.count;
+    free(matches.items);
+    return result;
 }
 
 // Matches what was proposed since `tried`.
 static enum orl_result try_proposed(struct choice *c, size_t tried)
 {
-    struct orl_preempt_pair *proposed = c->pairs + tried;
+    struct trial *proposed = c->pairs + tried;
     size_t all = c->pair_count - tried, kept = 0;
     if (!all)
         return ORL_OK;
@@ -74,7 +99,10 @@ static enum orl_result try_proposed(struct choice *c, size_t tried)
         if (i == 0 || orl_order_pairs(&proposed[i], &proposed[kept - 1]) != 0)
             proposed[kept++] = proposed[i];
     c->pair_count = tried + kept;
-    ORL_TRY(orl_preempt_match_all(c->log, c->progress, c->descriptors, proposed, kept));
+    orl_logf(c->log, ORL_LOG_DEBUG, "pairs: preemptive matching of %zu pairs", kept);
+    ORL_TRY(orl_threads_each(&(struct orl_each){
+        .work = try_one, .priv = &(struct trying){c->photos, proposed}, .count = kept,
+        .progress = c->progress, .step = "pairs", .share = 0.99, .total = 1}));
     qsort(c->pairs, c->pair_count, sizeof *c->pairs, orl_order_pairs);
     return ORL_OK;
 }
@@ -125,7 +153,7 @@ static enum orl_result propose_near(struct choice *c, distance_fn distance, size
 // --- what the pairs look like from their photographs ---
 
 // Matches count; likeness decides between pairs with as many.
-static float score(const struct choice *c, const struct orl_preempt_pair *pair)
+static float score(const struct choice *c, const struct trial *pair)
 {
     return (float)pair->matches + 0.5f * orl_vlad_similarity(c->vectors, pair->a, pair->b);
 }
@@ -148,7 +176,7 @@ static enum orl_result make_links(struct choice *c)
     c->first_link = orl_array(c->log, c->count + 1, sizeof *c->first_link);
     ORL_TRY_MEMORY(c->links && c->first_link);
     for (size_t i = 0; i < c->pair_count; i++) {
-        const struct orl_preempt_pair *pair = &c->pairs[i];
+        const struct trial *pair = &c->pairs[i];
         float value = score(c, pair);
         c->links[2 * i] = (struct link){pair->a, pair->b, value, i};
         c->links[2 * i + 1] = (struct link){pair->b, pair->a, value, i};
@@ -203,7 +231,7 @@ static enum orl_result try_pairs(struct choice *c)
 
 static void choose(struct choice *c, size_t index)
 {
-    const struct orl_preempt_pair *pair = &c->pairs[index];
+    const struct trial *pair = &c->pairs[index];
     c->chosen[index] = true;
     c->partners[pair->a * c->words + pair->b / 64] |= UINT64_C(1) << pair->b % 64;
     c->partners[pair->b * c->words + pair->a / 64] |= UINT64_C(1) << pair->a % 64;
@@ -232,7 +260,7 @@ static enum orl_result choose_successive(struct choice *c)
             order[known++] = (struct orl_ranked){c->photos[p].taken_s, p};
     qsort(order, known, sizeof *order, orl_order_ranked);
     for (size_t i = 1; i < known; i++) {
-        struct orl_preempt_pair *pair =
+        struct trial *pair =
             order[i].key - order[i - 1].key > SOON_S
                 ? NULL
                 : find_pair(c, c->pair_count, (uint32_t)order[i - 1].index,
@@ -257,7 +285,7 @@ static void choose_shortcuts(struct choice *c, const struct orl_ranked *ranked)
 {
     for (size_t i = 0; i < c->pair_count; i++) {
         size_t index = ranked[i].index;
-        const struct orl_preempt_pair *pair = &c->pairs[index];
+        const struct trial *pair = &c->pairs[index];
         if (!c->chosen[index] && pair->matches >= CANDIDATE &&
             !share_a_partner(c, pair->a, pair->b))
             choose(c, index);
@@ -332,7 +360,6 @@ static enum orl_result list_chosen(const struct choice *c, struct orl_pair_list 
 
 static void finish(struct choice *c)
 {
-    free(c->descriptors);
     free(c->vectors);
     free(c->pairs);
     free(c->links);
@@ -348,11 +375,7 @@ enum orl_result orl_pairs_choose(const struct orl_log *log, const struct orl_pro
 {
     *list = (struct orl_pair_list){0};
     struct choice c = {.log = log, .progress = progress, .photos = photos, .count = count};
-    c.descriptors = orl_array(log, count, sizeof *c.descriptors);
-    enum orl_result result = c.descriptors ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        c.descriptors[i] = photos[i].descriptors;
-    ORL_THEN(result, orl_vlad(log, c.descriptors, count, seed, &c.vectors));
+    enum orl_result result = orl_vlad(log, photos, count, seed, &c.vectors);
     ORL_THEN(result, try_pairs(&c));
     ORL_THEN(result, choose_pairs(&c));
     ORL_THEN(result, list_chosen(&c, list));

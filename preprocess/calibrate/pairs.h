@@ -3,13 +3,15 @@
 #ifndef ORL_PREPROCESS_PAIRS_H
 #define ORL_PREPROCESS_PAIRS_H
 
-#include "preprocess/calibrate/preempt.h"
+#include "oriel/progress.h"
+#include "preprocess/calibrate/sift_match.h"
 
 struct orl_pair_photo {
-    struct orl_descriptors descriptors; // the largest in scale first
-    double taken_s;                     // when, on one clock; NAN: unknown
-    double latitude, longitude;         // degrees; NAN: unknown
+    struct orl_features features; // the largest in scale first
+    double taken_s;               // when, on one clock; NAN: unknown
+    double latitude, longitude;   // degrees; NAN: unknown
 };
+enum { ORL_PAIR_FEATURES = 256 }; // the first of a photograph, which tell whether a pair is worth matching
 
 struct orl_pair {
     uint32_t a, b; // indices of photographs, a < b
@@ -17,7 +19,7 @@ struct orl_pair {
 struct orl_pair_list {
     struct orl_pair *items; // owned; in order of a, then b
     size_t count;
-    size_t tried;           // pairs that preemptive matching looked at
+    size_t tried;           // pairs that preemptive matching (Wu 2013) looked at
 };
 
 enum orl_result orl_pairs_choose(const struct orl_log *log, const struct orl_progress *progress,

@@ -9,18 +9,19 @@
 enum { WORDS = ORL_VLAD_WORDS, SIZE = ORL_SIFT_SIZE, SAMPLES_MAX = 1 << 13, ITERATIONS = 11 };
 
 // Every photograph gives the same number of its features, spread over their scales.
-static enum orl_result sample(const struct orl_log *log, const struct orl_descriptors *photos,
+static enum orl_result sample(const struct orl_log *log, const struct orl_pair_photo *photos,
                               size_t count, float **samples, size_t *sampled)
 {
     size_t each = count ? SAMPLES_MAX / count : 0;
-    each = each < 1 ? 1 : each > ORL_PREEMPT_FEATURES ? ORL_PREEMPT_FEATURES : each;
+    each = each < 1 ? 1 : each > ORL_PAIR_FEATURES ? ORL_PAIR_FEATURES : each;
     *sampled = 0;
     *samples = orl_array(log, count * each, SIZE * sizeof **samples);
     ORL_TRY_MEMORY(*samples);
     for (size_t p = 0; p < count; p++) {
-        size_t take = photos[p].count < each ? photos[p].count : each;
+        const struct orl_features *features = &photos[p].features;
+        size_t take = features->count < each ? features->count : each;
         for (size_t i = 0; i < take; i++) {
-            const uint8_t *from = photos[p].data + i * photos[p].count / take * SIZE;
+            const uint8_t *from = features->descriptors + i * features->count / take * SIZE;
             float *to = *samples + (*sampled)++ * SIZE;
             for (size_t k = 0; k < SIZE; k++)
                 to[k] = from[k];
@@ -30,7 +31,7 @@ static enum orl_result sample(const struct orl_log *log, const struct orl_descri
 }
 
 // Cluster centres of the samples: k-means in one level.
-static enum orl_result find_words(const struct orl_log *log, const struct orl_descriptors *photos,
+static enum orl_result find_words(const struct orl_log *log, const struct orl_pair_photo *photos,
                                   size_t count, uint32_t seed, float *words, size_t *word_count)
 {
     float *samples;
@@ -97,11 +98,11 @@ static void normalise(float *vector, size_t size)
 
 // Each word's sum is normalised for itself (Arandjelovic and Zisserman 2013, "All about VLAD"), so
 // that what repeats in a photograph, as windows do, does not outweigh the rest.
-static void aggregate(const struct orl_descriptors *photo, const float *words, size_t word_count,
+static void aggregate(const struct orl_features *photo, const float *words, size_t word_count,
                       float *vector)
 {
     for (size_t i = 0; i < photo->count && word_count; i++) {
-        const uint8_t *descriptor = photo->data + i * SIZE;
+        const uint8_t *descriptor = photo->descriptors + i * SIZE;
         size_t w = nearest_word(words, word_count, descriptor);
         for (size_t k = 0; k < SIZE; k++)
             vector[w * SIZE + k] += descriptor[k] - words[w * SIZE + k];
@@ -111,7 +112,7 @@ static void aggregate(const struct orl_descriptors *photo, const float *words, s
     normalise(vector, ORL_VLAD_SIZE);
 }
 
-enum orl_result orl_vlad(const struct orl_log *log, const struct orl_descriptors *photos,
+enum orl_result orl_vlad(const struct orl_log *log, const struct orl_pair_photo *photos,
                          size_t count, uint32_t seed, float **vectors)
 {
     size_t word_count;
@@ -120,7 +121,7 @@ enum orl_result orl_vlad(const struct orl_log *log, const struct orl_descriptors
     enum orl_result result = words && *vectors ? ORL_OK : ORL_ERR_MEMORY;
     ORL_THEN(result, find_words(log, photos, count, seed, words, &word_count));
     for (size_t i = 0; result == ORL_OK && i < count; i++)
-        aggregate(&photos[i], words, word_count, *vectors + i * ORL_VLAD_SIZE);
+        aggregate(&photos[i].features, words, word_count, *vectors + i * ORL_VLAD_SIZE);
     free(words);
     if (result != ORL_OK) {
         free(*vectors);

@@ -175,19 +175,16 @@ void fuzz_database(const uint8_t *data, size_t size)
 {
     struct orl_database *db;
     struct orl_features features;
-    uint8_t *descriptors;
-    size_t count;
     bool has;
     uint32_t matches[2][2] = {{0, 1}, {2, 3}};
     fuzz_save("database.db", data, size);
     if (orl_database_open(&fuzz_log, fuzz_path("database.db"), &db) != ORL_OK)
         return;
-    if (orl_database_descriptors(db, "a.jpg", 2, &descriptors, &count) == ORL_OK) {
-        fuzz_require(count <= 2 && (!count || descriptors), "as many descriptors as asked for");
-        free(descriptors);
-    }
-    if (orl_database_features(db, "b.jpg", &features) == ORL_OK)
-        free(features.descriptors);
+    if (orl_database_features(db, "a.jpg", 2, &features) == ORL_OK)
+        fuzz_require(features.count <= 2 && features.descriptors, "as many features as asked for");
+    free(features.descriptors);
+    (void)!orl_database_features(db, "b.jpg", 0, &features);
+    free(features.descriptors);
     (void)!orl_database_has_matches(db, 1, 2, &has);
     (void)!orl_database_write_matches(db, 2, 1, matches, ORL_COUNT(matches));
     (void)!orl_database_hide_spaces(db, true);

@@ -5,7 +5,7 @@
 set -u
 build=$(realpath "$1") source=$(realpath "$2")
 shift 2
-[ $# -gt 0 ] || set -- unit_test_pairs unit_test_preempt unit_test_point_lod gpu_test_prefetch \
+[ $# -gt 0 ] || set -- unit_test_pairs unit_test_point_lod gpu_test_prefetch \
     gpu_test_progressive gpu_test_cloud
 # What libraries do by themselves, without instructions of the sanitizer, is not ours.
 export TSAN_OPTIONS=suppressions=$source/tests/checks/tsan.txt:ignore_noninstrumented_modules=1

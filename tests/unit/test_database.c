@@ -2,7 +2,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include "preprocess/calibrate/raw_matches.h"
+#include "preprocess/calibrate/match.h"
 #include "sift_like.h"
 #include "test.h"
 
@@ -121,14 +121,14 @@ static void largest_scales_come_first(void **state)
     static const char *const names[] = {"four.jpg", "six.jpg"};
     for (int i = 0; i < 2; i++) {
         static const uint8_t order[] = {1, 4, 3, 0, 2};
-        uint8_t *data;
-        size_t count;
-        for (size_t limit = 1; limit <= 8; limit++) {
-            assert_int_equal(orl_database_descriptors(db, names[i], limit, &data, &count), ORL_OK);
-            assert_int_equal(count, limit < 5 ? limit : 5);
-            for (size_t k = 0; k < count * ORL_SIFT_SIZE; k++)
-                assert_int_equal(data[k], order[k / ORL_SIFT_SIZE]);
-            free(data);
+        struct orl_features features;
+        for (size_t limit = 0; limit <= 8; limit++) {
+            assert_int_equal(orl_database_features(db, names[i], limit, &features), ORL_OK);
+            assert_int_equal(features.id, i + 1);
+            assert_int_equal(features.count, limit && limit < 5 ? limit : 5);
+            for (size_t k = 0; k < features.count * ORL_SIFT_SIZE; k++)
+                assert_int_equal(features.descriptors[k], limit ? order[k / ORL_SIFT_SIZE] : k / ORL_SIFT_SIZE);
+            free(features.descriptors);
         }
     }
     orl_database_close(&db);
@@ -138,16 +138,17 @@ static void largest_scales_come_first(void **state)
 static void no_features_is_no_error(void **state)
 {
     (void)state;
-    uint8_t *data;
-    size_t count;
+    static const char *const names[] = {"dark.jpg", "none.jpg"};
     make_tables();
     insert_photo(1, "dark.jpg", 6, NULL, 0);
     run_sql("INSERT INTO images VALUES (2, 'none.jpg', 1)");
     struct orl_database *db = open_database();
-    assert_int_equal(orl_database_descriptors(db, "dark.jpg", 9, &data, &count), ORL_OK);
-    assert_int_equal(count, 0);
-    assert_int_equal(orl_database_descriptors(db, "none.jpg", 9, &data, &count), ORL_OK);
-    assert_int_equal(count, 0);
+    for (size_t i = 0; i < 2; i++) {
+        struct orl_features features;
+        assert_int_equal(orl_database_features(db, names[i], 9, &features), ORL_OK);
+        assert_int_equal(features.count, 0);
+        free(features.descriptors);
+    }
     orl_database_close(&db);
 }
 
@@ -174,15 +175,14 @@ static void says_what_is_wrong_with_features(void **state)
         struct said said;
         struct orl_log log = log_to(&said);
         struct orl_database *db;
-        uint8_t *data;
-        size_t count;
+        struct orl_features features;
         remove(file);
         make_tables();
         insert_photo(1, "a.jpg", 6, scales, 2);
         run_sql(cases[i].damage);
         assert_int_equal(orl_database_open(&log, file, &db), ORL_OK);
-        assert_int_equal(orl_database_descriptors(db, "a.jpg", 9, &data, &count), cases[i].result);
-        assert_null(data);
+        assert_int_equal(orl_database_features(db, "a.jpg", 9, &features), cases[i].result);
+        assert_null(features.descriptors);
         assert_non_null(strstr(said.text, cases[i].says));
         assert_non_null(strstr(said.text, file));
         orl_database_close(&db);
@@ -216,8 +216,9 @@ static void says_when_it_is_cut_off(void **state)
     static const float scales[] = {1, 2, 3, 4, 5, 6, 7, 8};
     struct said said;
     struct orl_log log = log_to(&said);
-    uint8_t *bytes, *data;
-    size_t size, count;
+    struct orl_features features;
+    uint8_t *bytes;
+    size_t size;
     struct orl_database *db = NULL;
     make_tables();
     for (int i = 1; i < 40; i++) {
@@ -230,7 +231,7 @@ static void says_when_it_is_cut_off(void **state)
     free(bytes);
     enum orl_result result = orl_database_open(&log, file, &db);
     if (result == ORL_OK)
-        result = orl_database_descriptors(db, "39.jpg", 9, &data, &count);
+        result = orl_database_features(db, "39.jpg", 9, &features);
     assert_int_equal(result, ORL_ERR_FORMAT);
     assert_non_null(strstr(said.text, "cannot be used as COLMAP's database"));
     orl_database_close(&db);
@@ -281,20 +282,21 @@ static int stored(long long pair_id, uint32_t (*matches)[2])
 static void matches_are_written_for_colmap(void **state)
 {
     (void)state;
-    static const char *const names[] = {"a.jpg", "b.jpg", "c.jpg", "dark.jpg"};
-    static const struct orl_pair pairs[] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}};
-    const struct orl_each progress = {.share = 1, .total = 1};
+    struct orl_source sources[] = {{.name = "a.jpg"}, {.name = "b.jpg"}, {.name = "c.jpg"}, {.name = "dark.jpg"}};
+    struct orl_pair pairs[] = {{0, 1}, {0, 2}, {1, 2}, {2, 3}};
+    const struct orl_job job = {.sources = sources, .source_count = 4};
+    const struct orl_pair_list list = {.items = pairs, .count = 4};
     uint32_t matches[MANY][2];
     make_tables();
     for (int i = 0; i < 3; i++) {
         int features[150];
         for (int k = 0; k < 150; k++)
             features[k] = 100 * i + k * 7 % 150;
-        insert_view(9 - i, names[i], features, 150);
+        insert_view(9 - i, sources[i].name, features, 150);
     }
-    insert_view(1, names[3], NULL, 0);
+    insert_view(1, sources[3].name, NULL, 0);
     struct orl_database *db = open_database();
-    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(orl_match_features(&job, db, &list, 0, 4), ORL_OK);
     const long long base = 2147483647; // COLMAP's: the smaller id times this, plus the larger
     assert_int_equal(stored(7 * base + 9, matches), 0);
     assert_int_equal(stored(1 * base + 7, matches), 0);
@@ -308,10 +310,10 @@ static void matches_are_written_for_colmap(void **state)
     }
     // What is there stays, whatever it says.
     run_sql("UPDATE matches SET rows = 0, data = x''");
-    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(orl_match_features(&job, db, &list, 0, 4), ORL_OK);
     assert_int_equal(stored(7 * base + 8, matches), 0);
     run_sql("DELETE FROM matches WHERE pair_id < 17000000000");
-    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 4, pairs, 4), ORL_OK);
+    assert_int_equal(orl_match_features(&job, db, &list, 0, 4), ORL_OK);
     assert_int_equal(stored(7 * base + 8, matches), 50);
     assert_int_equal(stored(8 * base + 9, matches), 0);
     orl_database_close(&db);
@@ -326,22 +328,21 @@ static bool cancelled(void *priv)
 static void matching_can_be_interrupted(void **state)
 {
     (void)state;
-    static const char *const names[] = {"a.jpg", "b.jpg"};
-    static const struct orl_pair pairs[] = {{0, 1}};
+    struct orl_source sources[] = {{.name = "a.jpg"}, {.name = "b.jpg"}};
+    struct orl_pair pairs[] = {{0, 1}};
     const struct orl_progress cancel = {.cancelled = cancelled};
-    const struct orl_each progress = {.progress = &cancel, .share = 1, .total = 1};
+    const struct orl_job job = {.sources = sources, .source_count = 2, .progress = &cancel};
+    const struct orl_pair_list list = {.items = pairs, .count = 1};
     uint32_t matches[MANY][2];
     static const int features[] = {1, 2, 3};
     make_tables();
-    insert_view(1, names[0], features, 3);
-    insert_view(2, names[1], features, 3);
+    insert_view(1, sources[0].name, features, 3);
+    insert_view(2, sources[1].name, features, 3);
     struct orl_database *db = open_database();
-    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 2, pairs, 1),
-                     ORL_ERR_CANCELLED);
+    assert_int_equal(orl_match_features(&job, db, &list, 0, 1), ORL_ERR_CANCELLED);
     assert_int_equal(stored(2147483647LL + 2, matches), -1);
     run_sql("DROP TABLE matches");
-    assert_int_equal(orl_raw_matches_write(NULL, &progress, db, names, 2, pairs, 1),
-                     ORL_ERR_FORMAT);
+    assert_int_equal(orl_match_features(&job, db, &list, 0, 1), ORL_ERR_FORMAT);
     orl_database_close(&db);
 }
 
@@ -349,17 +350,16 @@ static void spaces_are_hidden_and_come_back(void **state)
 {
     (void)state;
     static const float scales[] = {2, 8};
-    uint8_t *data;
-    size_t count;
+    struct orl_features features;
     make_tables();
     insert_photo(1, "one day/in may.jpg", 6, scales, 2);
     struct orl_database *db = open_database();
     assert_int_equal(orl_database_hide_spaces(db, true), ORL_OK);
-    assert_int_equal(orl_database_descriptors(db, "one\x1f" "day/in\x1fmay.jpg", 9, &data, &count), ORL_OK);
-    free(data);
+    assert_int_equal(orl_database_features(db, "one\x1f" "day/in\x1fmay.jpg", 9, &features), ORL_OK);
+    free(features.descriptors);
     assert_int_equal(orl_database_hide_spaces(db, false), ORL_OK);
-    assert_int_equal(orl_database_descriptors(db, "one day/in may.jpg", 9, &data, &count), ORL_OK);
-    free(data);
+    assert_int_equal(orl_database_features(db, "one day/in may.jpg", 9, &features), ORL_OK);
+    free(features.descriptors);
     orl_database_close(&db);
 }
 
@@ -391,7 +391,7 @@ static void few_features_are_dropped(void **state)
     static const char *const names[] = {"few.jpg", "enough.jpg"};
     for (size_t i = 0; i < 2; i++) {
         struct orl_features features;
-        assert_int_equal(orl_database_features(db, names[i], &features), ORL_OK);
+        assert_int_equal(orl_database_features(db, names[i], 0, &features), ORL_OK);
         assert_int_equal(features.count, i ? 3 : 0);
         free(features.descriptors);
     }

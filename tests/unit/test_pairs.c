@@ -22,8 +22,8 @@ static struct orl_pair_photo *add_photo(struct collection *c, size_t room)
 {
     assert_true(c->count < PHOTOS_MAX);
     struct orl_pair_photo *photo = &c->photos[c->count++];
-    photo->descriptors.data = calloc(room, SIFT_SIZE);
-    assert_non_null(photo->descriptors.data);
+    photo->features.descriptors = calloc(room, SIFT_SIZE);
+    assert_non_null(photo->features.descriptors);
     photo->taken_s = photo->latitude = photo->longitude = NAN;
     return photo;
 }
@@ -31,16 +31,16 @@ static struct orl_pair_photo *add_photo(struct collection *c, size_t room)
 static void add_features(struct collection *c, struct orl_pair_photo *photo, uint32_t first,
                          size_t count, float alike)
 {
-    uint8_t *bytes = (uint8_t *)photo->descriptors.data;
+    struct orl_features *features = &photo->features;
     for (size_t i = 0; i < count; i++)
-        sift_write(bytes + photo->descriptors.count++ * SIFT_SIZE, first + (uint32_t)i, alike,
+        sift_write(features->descriptors + features->count++ * SIFT_SIZE, first + (uint32_t)i, alike,
                    &c->noise);
 }
 
 static void end(struct collection *c, struct orl_pair_list *list)
 {
     for (size_t i = 0; i < c->count; i++)
-        free((void *)c->photos[i].descriptors.data);
+        free(c->photos[i].features.descriptors);
     orl_pairs_finish(list);
 }
 
@@ -110,6 +110,44 @@ static void ring_is_closed(void **state)
     }
     assert_int_equal(list.count, 4 * RING + strangers);
     assert_true(strangers < RING / 4);
+    end(&c, &list);
+}
+
+static bool always(void *priv)
+{
+    (void)priv;
+    return true;
+}
+
+static bool never(void *priv)
+{
+    (void)priv;
+    return false;
+}
+
+static void report(void *priv, const char *step, double done, double total, const char *detail)
+{
+    (void)detail;
+    assert_string_equal(step, "pairs");
+    assert_true(done < total);
+    ++*(int *)priv;
+}
+
+static void progress_is_told_and_cancelled(void **state)
+{
+    (void)state;
+    static struct collection c;
+    struct orl_pair_list list;
+    int reports = 0;
+    struct orl_progress progress = {.report = report, .cancelled = never, .priv = &reports};
+    begin(&c);
+    for (uint32_t i = 0; i < 30; i++)
+        add_features(&c, add_photo(&c, FEATURES), 7 * i, FEATURES, SAME);
+    assert_int_equal(orl_pairs_choose(NULL, &progress, c.photos, c.count, 0, &list), ORL_OK);
+    assert_true(reports > 0);
+    orl_pairs_finish(&list);
+    progress.cancelled = always;
+    assert_int_equal(orl_pairs_choose(NULL, &progress, c.photos, c.count, 0, &list), ORL_ERR_CANCELLED);
     end(&c, &list);
 }
 
@@ -281,6 +319,7 @@ int main(void)
         cmocka_unit_test(few_photographs_are_no_trouble), cmocka_unit_test(likeness_can_mislead),
         cmocka_unit_test(time_helps), cmocka_unit_test(succession_is_matched),
         cmocka_unit_test(place_helps), cmocka_unit_test(common_partner_helps),
+        cmocka_unit_test(progress_is_told_and_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
