@@ -56,6 +56,28 @@ prints "ground       1.25 below the photographs"
 prepare 2
 [ "$(md5sum <"$scene/points.ply")" = "$sum" ] || fail "a whole scene was changed"
 
+# Records that an older program left, with stages and options that are gone: those whose keys and files are the same
+# stay, the others are made again, once. The photographs hold their paths, so that their hashes are those of the records.
+older() {
+    (cd "$work" && run 0 prepare older --out from-older --test-list 1,3.png --keep all "$@"; exit $failures)
+    failures=$?
+}
+(cd "$work" && photos older 0.png 1.png 2.png 3.png 4.png)
+older
+cp "$source/tests/e2e/stages_older.json" "$work/from-older/.oriel/stages.json"
+older --resume
+says "some stages are done again"
+says "calibrate: done already"
+grep -q "densify: done already" "$work/err" && fail "maps of an older program were taken for those of this one"
+run 0 info "$work/from-older"
+prints "5 registered (3 train, 2 held out)"
+: >"$work/trace"
+older --resume
+[ -s "$work/trace" ] && fail "what was made again was not recorded"
+says "undistort: done already"
+says "occluders: done already"
+rm -r "$work/older" "$work/from-older"
+
 # Held-out photographs are neither fused nor stereo sources.
 [ "$(tr '\n' ' ' <"$scene/stereo/fusion.cfg")" = "0.png 2.png 4.png " ] ||
     fail "fusion.cfg lists other than the training photographs"
