@@ -181,8 +181,6 @@ enum orl_result orl_stage_densify(struct orl_job *job, json_t *record)
     enum orl_result result = choose_densifier(job, &use_colmap);
     ORL_THEN(result, open_stereo(job, &train));
     ORL_THEN(result, use_colmap ? densify_colmap(job, record) : densify_gl(job, &train, record));
-    if (result == ORL_ERR_IO)
-        orl_job_hint_disk(job);
     orl_names_finish(&train);
     return result;
 }

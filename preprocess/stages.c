@@ -432,6 +432,8 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
     enum orl_result result = files ? orl_job_need_disk(job, stages[id].name, disk_need(job, id))
                                    : ORL_ERR_MEMORY;
     ORL_THEN(result, stages[id].run(job, record));
+    if (result == ORL_ERR_IO)
+        orl_job_hint_disk(job);
     ORL_THEN(result, sum_results(job, stages[id].results, files));
     if (json_object_size(files))
         json_object_set(record, "files", files);

@@ -61,10 +61,7 @@ static enum orl_result write_cloud(struct orl_job *job, const char *path, struct
 {
     for (size_t i = 0; i < points->count; i++)
         points->radius[i] = 0; // the next stage sets the radius
-    enum orl_result result = orl_points_write(job->log, path, points, false, NULL);
-    if (result == ORL_ERR_IO)
-        orl_job_hint_disk(job);
-    return result;
+    return orl_points_write(job->log, path, points, false, NULL);
 }
 
 // --- one cluster ---
@@ -144,8 +141,6 @@ static enum orl_result fuse_clusters(struct orl_job *job, const struct orl_clust
     for (int c = 0; result == ORL_OK && c < (int)clusters->count; c++)
         result = add_cluster(job, clusters, c, &writer, &again);
     ORL_THEN(result, orl_point_writer_end(&writer));
-    if (result == ORL_ERR_IO)
-        orl_job_hint_disk(job);
     orl_atomic_abort(&writer.file);
     return result;
 }

@@ -116,8 +116,6 @@ static enum orl_result write_mesh(const struct orl_job *job, const char *from, s
         result = orl_mesh_decimate(job->log, most, &mesh);
     ORL_THEN(result, orl_mesh_set_normals(job->log, &mesh));
     ORL_THEN(result, orl_mesh_write(job->log, ORL_PATH(job->dir, "mesh.ply"), &mesh));
-    if (result == ORL_ERR_IO)
-        orl_job_hint_disk(job);
     *triangles = mesh.triangle_count;
     orl_mesh_finish(&mesh);
     return result;

@@ -102,8 +102,6 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
                                   : write_whole(job, &params, &viewers, in, &left));
     ORL_THEN(result, orl_job_remove(job, ORL_SOFT_NAME)); // soft splats of the points before these
     ORL_THEN(result, orl_job_remove(job, ORL_REFINE_STATE_NAME));
-    if (result == ORL_ERR_IO)
-        orl_job_hint_disk(job);
     json_object_set_new(record, "tool", json_string("FLANN"));
     json_object_set_new(record, "settings", json_pack(
         "{s:i, s:f, s:f, s:f}", "neighbours", params.neighbours, "overlap",
