@@ -431,8 +431,7 @@ static enum orl_result check_lenses(const struct calibration *c)
     return ORL_OK;
 }
 
-// Says what was done, and hands the model over.
-static void write_record(struct calibration *c, json_t *record)
+static void write_record(const struct calibration *c, json_t *record)
 {
     json_object_set_new(record, "tool", json_sprintf("COLMAP %s", c->job->colmap_version));
     json_object_set_new(record, "cameras", json_integer(c->groups.count));
@@ -444,7 +443,6 @@ static void write_record(struct calibration *c, json_t *record)
                                       "chosen", (json_int_t)c->pairs.chosen, "choosing_s",
                                       c->pairs.choosing_s));
     name_left_out(c, record);
-    orl_job_set_calibrated(c->job, &c->best.model);
 }
 
 enum orl_result orl_stage_calibrate(struct orl_job *job, json_t *record)

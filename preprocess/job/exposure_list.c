@@ -99,22 +99,6 @@ const struct orl_listed_exposure *orl_exposure_list_find(const struct orl_exposu
     return NULL;
 }
 
-enum orl_exposure_source orl_exposure_told(const struct orl_exposure_list *list, const char *name,
-                                           const char *given, const struct orl_exif *exif,
-                                           double *ev)
-{
-    const struct orl_listed_exposure *listed = orl_exposure_list_find(list, name);
-    if (!listed && given)
-        listed = orl_exposure_list_find(list, given);
-    if (listed) {
-        *ev = listed->ev;
-        return ORL_EXPOSURE_LIST;
-    }
-    bool comparable = list->count == 0 || list->items[0].absolute;
-    return comparable && orl_exif_exposure_ev(exif, ev) ? ORL_EXPOSURE_EXIF
-                                                        : ORL_EXPOSURE_UNKNOWN;
-}
-
 void orl_exposure_list_finish(struct orl_exposure_list *list)
 {
     for (size_t i = 0; i < list->count; i++)

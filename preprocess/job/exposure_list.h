@@ -28,10 +28,4 @@ enum orl_exposure_source {
     ORL_EXPOSURE_LIST,
     ORL_EXPOSURE_SCENE, // estimated from the scene
 };
-// log2 of the exposure of the photograph called `name`, or `given` (NULL: the same), from the list
-// or EXIF. EXIF is ignored when the list holds EV, whose scale differs from that of EXIF.
-enum orl_exposure_source orl_exposure_told(const struct orl_exposure_list *list, const char *name,
-                                           const char *given, const struct orl_exif *exif,
-                                           double *ev);
-
 #endif

@@ -260,7 +260,16 @@ const struct orl_source *orl_job_find(const struct orl_job *job, const char *nam
 enum orl_exposure_source orl_source_exposure(const struct orl_job *job,
                                              const struct orl_source *source, double *ev)
 {
-    return orl_exposure_told(&job->exposures, source->name, source->given, &source->exif, ev);
+    const struct orl_exposure_list *list = &job->exposures;
+    const struct orl_listed_exposure *listed = orl_exposure_list_find(list, source->name);
+    if (!listed && source->given)
+        listed = orl_exposure_list_find(list, source->given);
+    if (listed) {
+        *ev = listed->ev;
+        return ORL_EXPOSURE_LIST;
+    }
+    bool comparable = list->count == 0 || list->items[0].absolute;
+    return comparable && orl_exif_exposure_ev(&source->exif, ev) ? ORL_EXPOSURE_EXIF : ORL_EXPOSURE_UNKNOWN;
 }
 
 static enum orl_result read_model(const struct orl_job *job, const char *name,
@@ -309,13 +318,6 @@ enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
     orl_colmap_finish(&job->sparse);
     *model = &job->sparse;
     return read_model(job, name, &job->sparse);
-}
-
-void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model)
-{
-    orl_colmap_finish(&job->calibrated);
-    job->calibrated = *model;
-    *model = (struct orl_colmap_model){0};
 }
 
 enum orl_result orl_job_train_names(struct orl_job *job, struct orl_names *names)

@@ -133,16 +133,16 @@ void orl_job_hint_disk(const struct orl_job *job);
 
 // --- photographs and their model ---
 
-// log2 of the photograph's exposure, from the job's list or EXIF.
+// log2 of the photograph's exposure, from the job's list or EXIF. EXIF is ignored when the list holds EV,
+// whose scale differs from that of EXIF.
 enum orl_exposure_source orl_source_exposure(const struct orl_job *job,
                                              const struct orl_source *source, double *ev);
 const struct orl_source *orl_job_find(const struct orl_job *job, const char *name);
-// The calibrated model of the photographs as given. The first call reads it; the job owns it, and
-// it stays valid until another model is set.
+// The calibrated model of the photographs as given. The first call reads it; the job owns it.
 enum orl_result orl_job_calibrated(struct orl_job *job,
                                    const struct orl_colmap_model **model) ORL_CHECK_RESULT;
-// The same for the undistorted model in SCENE/sparse. All of its photographs are among the sources:
-// orl_job_find finds each.
+// The same for the undistorted model in SCENE/sparse, which stays valid until another is set. All of its
+// photographs are among the sources: orl_job_find finds each.
 enum orl_result orl_job_sparse(struct orl_job *job,
                                const struct orl_colmap_model **model) ORL_CHECK_RESULT;
 // Opens the scene with this model, its points and held-out photographs as the sources say, before
@@ -151,9 +151,6 @@ enum orl_result orl_job_open_scene(struct orl_job *job, struct orl_scene **scene
 // Makes the undistorted model in SCENE/`name`, which will become SCENE/sparse, the job's.
 enum orl_result orl_job_set_sparse(struct orl_job *job, const char *name,
                                    const struct orl_colmap_model **model) ORL_CHECK_RESULT;
-// Hands over the calibrated model that .oriel/calibrate/model now holds; *model is empty
-// afterwards.
-void orl_job_set_calibrated(struct orl_job *job, struct orl_colmap_model *model);
 // Names of the photographs in the undistorted model that are not held out.
 enum orl_result orl_job_train_names(struct orl_job *job, struct orl_names *names) ORL_CHECK_RESULT;
 

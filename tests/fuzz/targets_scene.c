@@ -323,11 +323,9 @@ void fuzz_path_text(const uint8_t *data, size_t size)
 void fuzz_exposures(const uint8_t *data, size_t size)
 {
     struct orl_exposure_list list;
-    const struct orl_exif exif = {.exposure_s = 0.004, .iso = 200};
-    double ev;
     fuzz_save("exposures.csv", data, size);
     if (orl_exposure_list_read(&fuzz_log, fuzz_path("exposures.csv"), &list) == ORL_OK) {
-        (void)orl_exposure_told(&list, "a.jpg", "photos/a.tif", &exif, &ev);
+        (void)orl_exposure_list_find(&list, "a.jpg");
         for (size_t i = 0; i < list.count; i++)
             fuzz_require(fabs(list.items[i].ev) <= 64, "exposures are usable");
     }
