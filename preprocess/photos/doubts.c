@@ -56,20 +56,14 @@ static enum orl_result find_look(const struct orl_job *job, const struct orl_sou
 static enum orl_result find_blurred(const struct orl_job *job, const struct orl_look *looks,
                                     struct orl_doubt *doubts)
 {
-    size_t n = job->source_count;
-    float *sharpness = orl_array(job->log, n, sizeof *sharpness);
-    enum orl_result result = sharpness ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < n; i++)
-        sharpness[i] = looks[i].sharpness;
-    float limit = 0;
-    ORL_THEN(result, orl_look_blurred_below(job->log, sharpness, n, &limit));
-    for (size_t i = 0; result == ORL_OK && i < n; i++) {
-        doubts[i].blurred = sharpness[i] < limit;
+    float limit;
+    ORL_TRY(orl_look_blurred_below(job->log, looks, job->source_count, &limit));
+    for (size_t i = 0; i < job->source_count; i++) {
+        doubts[i].blurred = looks[i].sharpness < limit;
         orl_logf(job->log, ORL_LOG_DEBUG, "%s: sharpness 2^%.2f", job->sources[i].name,
-                 (double)sharpness[i]);
+                 (double)looks[i].sharpness);
     }
-    free(sharpness);
-    return result;
+    return ORL_OK;
 }
 
 static void find_same(const struct orl_job *job, const struct orl_look *looks,

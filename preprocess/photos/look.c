@@ -145,7 +145,7 @@ bool orl_look_same_picture(const struct orl_look *a, const struct orl_look *b)
     return share_alike(a, b, 0.97f, MEAN_MAX) >= 0.95f;
 }
 
-enum orl_result orl_look_blurred_below(const struct orl_log *log, const float *sharpness,
+enum orl_result orl_look_blurred_below(const struct orl_log *log, const struct orl_look *looks,
                                        size_t count, float *limit)
 {
     *limit = -INFINITY;
@@ -153,8 +153,8 @@ enum orl_result orl_look_blurred_below(const struct orl_log *log, const float *s
     float *sorted = orl_array(log, count, sizeof *sorted);
     ORL_TRY_MEMORY(sorted);
     for (size_t i = 0; i < count; i++)
-        if (isfinite(sharpness[i]))
-            sorted[told++] = sharpness[i];
+        if (isfinite(looks[i].sharpness))
+            sorted[told++] = looks[i].sharpness;
     qsort(sorted, told, sizeof *sorted, orl_order_floats);
     if (told >= BLURRED_COUNT)
         *limit = sorted[told / 2] + BLURRED_LOG2;

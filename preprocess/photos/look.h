@@ -24,7 +24,7 @@ bool orl_look_same_view(const struct orl_look *a, const struct orl_look *b);
 bool orl_look_same_picture(const struct orl_look *a, const struct orl_look *b);
 // The sharpness below which a photograph counts as blurred, among `count` others like it.
 // Photographs whose sharpness is infinite, since they have too little detail to tell, do not count.
-enum orl_result orl_look_blurred_below(const struct orl_log *log, const float *sharpness,
+enum orl_result orl_look_blurred_below(const struct orl_log *log, const struct orl_look *looks,
                                        size_t count, float *limit) ORL_CHECK_RESULT;
 
 #endif
