@@ -31,6 +31,7 @@ struct densifier {
     const struct orl_colmap_model *model;
     struct orl_colmap_model own_model; // read here when the caller gives none
     struct densify_photos photos;
+    size_t first, end; // photographs of this run: all, or those of its part
     struct densify_plan *plans;
     struct densify_cache cache;
     double done, total;
@@ -314,26 +315,9 @@ static enum orl_result process(struct densifier *d, size_t photo, int pass)
     return result;
 }
 
-// Photographs [first, end) of this run: all, or those of its part.
-static size_t part_begin(const struct densifier *d, int index)
-{
-    const struct orl_densify_part *part = d->params.part;
-    return d->photos.count * (size_t)index / (size_t)part->count;
-}
-
-static size_t first_photo(const struct densifier *d)
-{
-    return d->params.part ? part_begin(d, d->params.part->index) : 0;
-}
-
-static size_t end_photo(const struct densifier *d)
-{
-    return d->params.part ? part_begin(d, d->params.part->index + 1) : d->photos.count;
-}
-
 static enum orl_result process_all(struct densifier *d, int pass)
 {
-    for (size_t i = first_photo(d); i < end_photo(d); i++) {
+    for (size_t i = d->first; i < d->end; i++) {
         const char *name = densify_photo_name(&d->photos, i);
         bool has = has_maps(d, i, pass);
         if (orl_progress_cancelled(d->progress))
@@ -370,9 +354,9 @@ static enum orl_result process_passes(struct densifier *d)
     const struct orl_densify_part *part = d->params.part;
     const int passes = d->params.geometric_passes + 1;
     bool all = true;
-    for (size_t i = first_photo(d); i < end_photo(d) && all; i++)
+    for (size_t i = d->first; i < d->end && all; i++)
         all = has_maps(d, i, passes - 1);
-    d->total = (double)(end_photo(d) - first_photo(d)) * (part ? 1 : passes);
+    d->total = (double)(d->end - d->first) * (part ? 1 : passes);
     for (int p = 0; p < passes && !all; p++)
         if (!part || p == part->pass)
             ORL_TRY(process_all(d, p));
@@ -433,6 +417,9 @@ static enum orl_result open_workspace(struct densifier *d, const struct orl_name
     if (!d->params.model)
         ORL_TRY(orl_colmap_read(d->log, ORL_PATH(d->workspace, "sparse"), &d->own_model));
     ORL_TRY(orl_densify_photos_init(d->log, d->model, names, &d->photos));
+    const struct orl_densify_part all = {.count = 1}, *part = d->params.part ? d->params.part : &all;
+    d->first = d->photos.count * (size_t)part->index / (size_t)part->count;
+    d->end = d->photos.count * ((size_t)part->index + 1) / (size_t)part->count;
     ORL_TRY(plan_memory(d));
     ORL_TRY(orl_densify_plans_make(d->log, &d->photos, d->params.sources, &d->plans));
     ORL_TRY(check_plans(d));
