@@ -40,9 +40,7 @@ static enum orl_result fill(struct import_job *job)
     // Bad silhouettes for the hull must be reported before the long work.
     ORL_TRY(orl_import_write_mesh(job, &triangles));
     ORL_TRY(fill_points(job, &points));
-    ORL_TRY(job->params->points == ORL_IMPORT_DENSIFY
-                ? orl_import_complete_manifest(job, triangles)
-                : orl_import_write_manifest(job, points, triangles));
+    ORL_TRY(orl_import_write_manifest(job, points, triangles));
     return orl_new_dir_finish(job->log, &job->new_dir);
 }
 

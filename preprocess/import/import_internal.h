@@ -100,11 +100,9 @@ enum orl_result orl_import_write_model(const struct import_job *job, const char 
 // Writes points.ply from a cloud, or without points.
 enum orl_result orl_import_write_points(const struct import_job *job, size_t *count) ORL_CHECK_RESULT;
 enum orl_result orl_import_write_mesh(struct import_job *job, size_t *triangles) ORL_CHECK_RESULT;
-// Writes scene.json, which must be the last file.
+// Writes scene.json, which must be the last file, or adds the part of import to the one that the stages of
+// prepare wrote.
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
                                           size_t triangles) ORL_CHECK_RESULT;
-// Adds the part of import to the scene.json that the stages of prepare wrote.
-enum orl_result orl_import_complete_manifest(const struct import_job *job,
-                                             size_t triangles) ORL_CHECK_RESULT;
 
 #endif

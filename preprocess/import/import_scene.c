@@ -215,17 +215,21 @@ static json_t *left_out(const struct import_job *job)
     return list;
 }
 
-static json_t *counts(const struct import_job *job, size_t points, size_t triangles)
+// Of a scene that import makes alone.
+static enum orl_result make_manifest(const struct import_job *job, size_t points, json_t **root)
 {
     json_int_t used = (json_int_t)job->view_count, test = 0;
-    json_int_t given = (json_int_t)job->known.model.image_count;
+    char sum[ORL_CHECKSUM_SIZE];
+    ORL_TRY(orl_file_checksum(job->log, ORL_PATH(job->dir, "points.ply"), sum));
     for (size_t i = 0; i < job->view_count; i++)
         test += job->views[i].test;
-    return json_pack("{s:I, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "given", given,
-                     "skipped", 0, "used", used, "registered", used, "train", used - test, "test",
-                     test, "left_out", given - used, "sparse_points",
-                     (json_int_t)job->known.model.point_count, "points", (json_int_t)points,
-                     "triangles", (json_int_t)triangles, "frames", (json_int_t)job->frame_count);
+    *root = json_pack(
+        "{s:s, s:i, s:s, s:{s:n, s:i, s:I, s:I, s:I, s:I, s:n, s:I, s:I}, s:o, s:n, s:{}, s:{s:s}}", "format",
+        "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts", "given",
+        "skipped", 0, "used", used, "registered", used, "train", used - test, "test", test, "left_out",
+        "sparse_points", (json_int_t)job->known.model.point_count, "points", (json_int_t)points, "photographs",
+        photographs(job), "left_out", "stages", "checksums", "points.ply", sum);
+    return *root ? ORL_OK : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the scene");
 }
 
 static json_t *settings(const struct import_job *job)
@@ -255,7 +259,7 @@ static json_t *room_json(const struct import_job *job)
     return orl_manifest_room(room.known ? &room : &job->known.room);
 }
 
-// Sets what import states besides the stages: of scenes of either kind.
+// Sets what import states besides the stages.
 static void set_import(const struct import_job *job, json_t *root)
 {
     const double *o = job->known.origin;
@@ -265,37 +269,22 @@ static void set_import(const struct import_job *job, json_t *root)
         json_object_set_new(root, "origin", json_pack("[f,f,f]", o[0], o[1], o[2]));
 }
 
-enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points,
-                                          size_t triangles)
-{
-    char sum[ORL_CHECKSUM_SIZE];
-    ORL_TRY(orl_file_checksum(job->log, ORL_PATH(job->dir, "points.ply"), sum));
-    json_t *root = json_pack(
-        "{s:s, s:i, s:s, s:o, s:o, s:o, s:{}, s:{s:s}}", "format", "oriel scene", "version",
-        ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts",
-        counts(job, points, triangles), "photographs", photographs(job), "left_out", left_out(job),
-        "stages", "checksums", "points.ply", sum);
-    if (root)
-        set_import(job, root);
-    enum orl_result result = orl_json_write(job->log, ORL_PATH(job->dir, "scene.json"), root);
-    json_decref(root);
-    return result;
-}
-
-enum orl_result orl_import_complete_manifest(const struct import_job *job, size_t triangles)
+enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points, size_t triangles)
 {
     json_t *root = NULL;
     const char *path = ORL_PATH(job->dir, "scene.json");
-    ORL_TRY(orl_json_read(job->log, path, &root));
-    json_t *numbers = json_object_get(root, "counts"), *missing = left_out(job);
-    set_import(job, root);
-    json_object_set_new(root, "left_out", json_incref(missing));
-    json_object_set_new(numbers, "given", json_integer((json_int_t)job->known.model.image_count));
-    json_object_set_new(numbers, "left_out", json_integer((json_int_t)json_array_size(missing)));
-    json_object_set_new(numbers, "triangles", json_integer((json_int_t)triangles));
-    json_object_set_new(numbers, "frames", json_integer((json_int_t)job->frame_count));
-    enum orl_result result = orl_json_write(job->log, path, root);
-    json_decref(missing);
+    enum orl_result result = job->params->points == ORL_IMPORT_DENSIFY ? orl_json_read(job->log, path, &root)
+                                                                       : make_manifest(job, points, &root);
+    if (result == ORL_OK) {
+        json_t *numbers = json_object_get(root, "counts"), *missing = left_out(job);
+        set_import(job, root);
+        json_object_set_new(numbers, "given", json_integer((json_int_t)job->known.model.image_count));
+        json_object_set_new(numbers, "left_out", json_integer((json_int_t)json_array_size(missing)));
+        json_object_set_new(numbers, "triangles", json_integer((json_int_t)triangles));
+        json_object_set_new(numbers, "frames", json_integer((json_int_t)job->frame_count));
+        json_object_set_new(root, "left_out", missing);
+        result = orl_json_write(job->log, path, root);
+    }
     json_decref(root);
     return result;
 }
