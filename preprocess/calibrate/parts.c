@@ -53,22 +53,23 @@ enum orl_result orl_parts_begin(struct orl_job *job, const struct orl_camera_gro
     return result;
 }
 
-static enum orl_result read_photo(struct orl_job *job, const json_t *state,
+static enum orl_result read_photo(struct orl_job *job, json_t *state,
                                   struct orl_camera_groups *groups)
 {
-    const char *name = orl_json_text(state, "name");
+    const char *name = NULL;
     size_t i = job->source_count;
-    json_int_t camera = json_integer_value(json_object_get(state, "camera"));
-    if (!name || camera < 0 || (size_t)camera > i)
-        return orl_fail(job->log, ORL_ERR_FORMAT, "%s/" STATE ": damaged", job->dir);
+    json_int_t camera = -1;
+    int placed = 0;
     struct orl_source *source = &job->sources[i];
+    struct orl_exif *exif = &source->exif;
+    if (json_unpack(state, "{s:s, s:I, s:F, s:b, s:F, s:F}", "name", &name, "camera", &camera, "taken_s", &exif->taken_s,
+                    "placed", &placed, "latitude", &exif->latitude, "longitude", &exif->longitude) != 0 ||
+        camera < 0 || (size_t)camera > i)
+        return orl_fail(job->log, ORL_ERR_FORMAT, "%s/" STATE ": damaged", job->dir);
     source->name = orl_strdup(job->log, name);
     ORL_TRY_MEMORY(source->name);
     job->source_count++;
-    source->exif.taken_s = json_number_value(json_object_get(state, "taken_s"));
-    source->exif.placed = json_is_true(json_object_get(state, "placed"));
-    source->exif.latitude = json_number_value(json_object_get(state, "latitude"));
-    source->exif.longitude = json_number_value(json_object_get(state, "longitude"));
+    exif->placed = placed;
     groups->of[i] = (int)camera;
     groups->size[camera]++;
     if (camera >= groups->count)
