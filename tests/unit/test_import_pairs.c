@@ -1,5 +1,5 @@
 // Pairs of photographs with known cameras that are worth matching.
-#include "preprocess/import_pairs.h"
+#include "preprocess/import_densify.h"
 #include "test.h"
 
 enum { MANY = 60 };
