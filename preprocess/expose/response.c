@@ -45,7 +45,7 @@ struct problem {
     struct orl_robust_fit fit; // unknowns: the terms, then an offset of each photograph's log exposure
     float *light;    // log of vignetting times exposure
     double floor;    // 8-bit value; darker values have no weight
-    double srgb[NODES], off[NODES]; // log exposure of sRGB; the curve's difference from it
+    double off[NODES]; // log exposure of the curve minus that of sRGB
     int channel;
     size_t photo_count;
     double *offset;  // of each photograph's log exposure
@@ -73,12 +73,17 @@ static size_t node_of(double value, double *upper)
     return node;
 }
 
+// Log exposure of sRGB.
+static double srgb_at(double value)
+{
+    return log((double)orl_srgb_decode((float)value / 255));
+}
+
 static double curve_at(const struct problem *p, double value)
 {
     double u;
     size_t n = node_of(value, &u);
-    return log((double)orl_srgb_decode((float)value / 255)) + (1 - u) * p->off[n] +
-           u * p->off[n + 1];
+    return srgb_at(value) + (1 - u) * p->off[n] + u * p->off[n + 1];
 }
 
 static bool is_usable(const struct problem *p, const struct orl_observation *item)
@@ -220,7 +225,7 @@ static void set_equation(const void *problem, size_t i, struct orl_equation *equ
     const struct orl_observation *item = &p->samples->items[i];
     double value = (double)item->value[p->channel], t[TERMS];
     terms_at(value, t);
-    equation->value = log((double)orl_srgb_decode((float)value / 255)) - (double)p->light[i];
+    equation->value = srgb_at(value) - (double)p->light[i];
     for (size_t k = 0; k < TERMS; k++)
         orl_equation_add(equation, k, t[k]);
     orl_equation_add(equation, TERMS + item->photo, -1);
@@ -326,7 +331,7 @@ static void finish_curve(const struct problem *p, float linear[256])
 {
     double g[NODES];
     for (size_t v = 1; v < NODES; v++)
-        g[v] = p->srgb[v] + p->off[v];
+        g[v] = srgb_at((double)v) + p->off[v];
     // Starts from the middle, where the samples constrain the curve best.
     for (size_t v = NODES / 2 + 1; v < NODES; v++)
         g[v] = fmax(g[v], g[v - 1] + RISE_MIN);
@@ -359,7 +364,7 @@ static bool iterate(struct problem *p, enum unknown unknown, double *spread_ev)
 static double judge_curve(struct problem *p, const float linear[256])
 {
     for (size_t v = 1; v < NODES; v++)
-        p->off[v] = log(fmax((double)linear[v], 1e-9)) - p->srgb[v];
+        p->off[v] = log(fmax((double)linear[v], 1e-9)) - srgb_at((double)v);
     p->off[0] = p->off[1];
     memset(p->offset, 0, p->photo_count * sizeof *p->offset);
     orl_robust_reset(&p->fit);
@@ -418,12 +423,6 @@ static void set_srgb(struct orl_response *response)
             response->linear[c][v] = orl_srgb_decode((float)v / 255);
 }
 
-static void set_logarithms(struct problem *p)
-{
-    for (size_t v = 1; v < NODES; v++)
-        p->srgb[v] = log((double)orl_srgb_decode((float)v / 255));
-}
-
 enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_method method,
                                  const struct orl_samples *samples,
                                  const struct orl_exposed *photos, size_t photo_count, int camera,
@@ -441,10 +440,8 @@ enum orl_result orl_response_fit(const struct orl_log *log, enum orl_response_me
     p.offset = orl_array(log, photo_count, 2 * sizeof *p.offset);
     if (!p.light || !p.offset)
         result = ORL_ERR_MEMORY;
-    if (result == ORL_OK) {
+    else
         p.share = p.offset + photo_count;
-        set_logarithms(&p);
-    }
     bool finds = method == ORL_RESPONSE_POLYNOMIAL;
     bool is_found = false;
     if (result == ORL_OK && !finds)
