@@ -211,7 +211,7 @@ static enum orl_result try_costly(struct calibration *c)
     ORL_TRY(set_mark(c, false));
     ORL_TRY(restart_database(c));
     ORL_TRY(extract_all(c, true));
-    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, NULL));
+    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, NULL, NULL));
     ORL_TRY(map(c, false, NULL));
     return enough(c) ? ORL_OK : map(c, true, NULL);
 }
@@ -254,7 +254,7 @@ static enum orl_result match_left_out(struct calibration *c)
     for (size_t i = 0; i < c->job->source_count; i++)
         marked[i] = !orl_colmap_image_by_name(&c->best.model, c->job->sources[i].name);
     enum orl_result result = set_mark(c, false);
-    ORL_THEN(result, orl_match_marked(c->job, marked));
+    ORL_THEN(result, orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, marked, NULL));
     ORL_THEN(result, set_mark(c, true));
     free(marked);
     return result == ORL_OK ? go_on_mapping(c, false) : result;
@@ -265,7 +265,7 @@ static enum orl_result match_all(struct calibration *c)
     if (c->way == ORL_MATCHING_EXHAUSTIVE || enough(c))
         return ORL_OK;
     say(c, "matching all pairs");
-    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, NULL));
+    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, false, NULL, NULL));
     return map(c, false, NULL);
 }
 
@@ -335,7 +335,7 @@ static enum orl_result begin_database(struct calibration *c)
     ORL_TRY(orl_job_fresh_dir(c->job, WORK));
     ORL_TRY(normalise(c));
     ORL_TRY(extract_all(c, false));
-    ORL_TRY(orl_match(c->job, c->way, false, &c->pairs));
+    ORL_TRY(orl_match(c->job, c->way, false, NULL, &c->pairs));
     return set_mark(c, true);
 }
 

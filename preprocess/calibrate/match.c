@@ -245,27 +245,16 @@ static enum orl_result list_pairs(const struct orl_job *job, bool near, const bo
     return ORL_OK;
 }
 
-static enum orl_result match_and_free(struct orl_job *job, bool guided, struct orl_pair_list *list)
-{
-    enum orl_result result = orl_match_list(job, ORL_CALIBRATE_DATABASE, guided, list);
-    if (result == ORL_OK)
-        orl_progress_report(job->progress, "matching", 1, 1, NULL);
-    orl_pairs_finish(list);
-    return result;
-}
-
-enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
+enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided, const bool *marked,
                           struct orl_match_summary *summary)
 {
     struct orl_pair_list list = {0};
-    ORL_TRY(way == ORL_MATCHING_RETRIEVAL ? orl_match_choose(job, ORL_CALIBRATE_DATABASE, &list, summary)
-                                          : list_pairs(job, way == ORL_MATCHING_SEQUENTIAL, NULL, &list));
-    return match_and_free(job, guided, &list);
-}
-
-enum orl_result orl_match_marked(struct orl_job *job, const bool *marked)
-{
-    struct orl_pair_list list = {0};
-    ORL_TRY(list_pairs(job, false, marked, &list));
-    return match_and_free(job, false, &list);
+    enum orl_result result = way == ORL_MATCHING_RETRIEVAL
+                                 ? orl_match_choose(job, ORL_CALIBRATE_DATABASE, &list, summary)
+                                 : list_pairs(job, way == ORL_MATCHING_SEQUENTIAL, marked, &list);
+    ORL_THEN(result, orl_match_list(job, ORL_CALIBRATE_DATABASE, guided, &list));
+    if (result == ORL_OK)
+        orl_progress_report(job->progress, "matching", 1, 1, NULL);
+    orl_pairs_finish(&list);
+    return result;
 }

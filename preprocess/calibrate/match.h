@@ -21,9 +21,10 @@ struct orl_match_summary {
     size_t tried, chosen; // pairs
     double choosing_s;
 };
-// guided: COLMAP also looks for matches by the geometry that it verified. summary: stays as it is by other ways than
+// guided: COLMAP also looks for matches by the geometry that it verified. marked: by other ways than retrieval, pairs
+// of marked photographs alone; NULL: all. Pairs that have matches keep them. summary: stays as it is by other ways than
 // retrieval, and may be NULL for them.
-enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided,
+enum orl_result orl_match(struct orl_job *job, enum orl_matching way, bool guided, const bool *marked,
                           struct orl_match_summary *summary) ORL_CHECK_RESULT;
 // Chooses pairs by retrieval from the features in `database`, a name below the scene. *list is
 // released with orl_pairs_finish.
@@ -38,7 +39,5 @@ enum orl_result orl_match_features(const struct orl_job *job, struct orl_databas
 // Matches these pairs and has COLMAP verify the matches, in `database`, a name below the scene; guided: as above.
 enum orl_result orl_match_list(struct orl_job *job, const char *database, bool guided,
                                const struct orl_pair_list *list) ORL_CHECK_RESULT;
-// Matches the marked photographs with all others. Pairs that have matches keep them.
-enum orl_result orl_match_marked(struct orl_job *job, const bool *marked) ORL_CHECK_RESULT;
 
 #endif
