@@ -28,16 +28,12 @@ void orl_colmap_arg(struct orl_colmap_run *run, const char *name, const char *fo
 
 double orl_colmap_line_progress(const char *line, double total)
 {
-    unsigned a, b, c, d;
-    if (sscanf(line, "Matching block [%u/%u, %u/%u]", &a, &b, &c, &d) == 4 && a && c && b && d)
-        return ((a - 1.0) * d + c) / ((double)b * d);
+    unsigned a, b;
     if (sscanf(line, "Registering image #%u (%u)", &a, &b) == 2 && total > 0)
         return b / total;
     bool counted = sscanf(line, "Processed file [%u/%u]", &a, &b) == 2 ||
-                   sscanf(line, "Matching image [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Matching block [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Undistorting image [%u/%u]", &a, &b) == 2 ||
-                   sscanf(line, "Fusing image [%u/%u]", &a, &b) == 2 ||
                    sscanf(line, "Processing view %u / %u", &a, &b) == 2;
     if (counted && b)
         return (double)a / b;
