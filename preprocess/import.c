@@ -26,20 +26,15 @@ static enum orl_result check_params(const struct orl_log *log, const struct orl_
     return ORL_OK;
 }
 
-static enum orl_result fill_points(struct import_job *job, size_t *count)
-{
-    const struct import_points known = {&job->known.model, false};
-    ORL_TRY(orl_import_write_model(job, "sparse", false, &known));
-    return job->params->points == ORL_IMPORT_DENSIFY ? orl_import_densify(job) : orl_import_write_points(job, count);
-}
-
 static enum orl_result fill(struct import_job *job)
 {
+    const struct import_points known = {&job->known.model, false};
     size_t points = 0, triangles = 0;
     ORL_TRY(orl_import_pictures(job));
     // Bad silhouettes for the hull must be reported before the long work.
     ORL_TRY(orl_import_write_mesh(job, &triangles));
-    ORL_TRY(fill_points(job, &points));
+    ORL_TRY(orl_import_write_model(job, "sparse", false, &known));
+    ORL_TRY(job->params->points == ORL_IMPORT_DENSIFY ? orl_import_densify(job) : orl_import_write_points(job, &points));
     ORL_TRY(orl_import_write_manifest(job, points, triangles));
     return orl_new_dir_finish(job->log, &job->new_dir);
 }

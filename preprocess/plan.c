@@ -107,18 +107,12 @@ static enum orl_result read_arguments(struct planner *p)
     return result;
 }
 
-// The training photographs that the stereo was begun with; none for COLMAP's stereo, which has no
-// parts.
-static enum orl_result read_photos(struct planner *p)
-{
-    return orl_path_is_file(ORL_PATH(p->dir, "stereo/densify.json"))
-               ? orl_file_read_names(p->log, ORL_PATH(p->dir, "stereo/fusion.cfg"), &p->photos) : ORL_OK;
-}
-
 static enum orl_result read_scene(struct planner *p, int photographs)
 {
     ORL_TRY(orl_colmap_read(p->log, ORL_PATH(p->dir, "sparse"), &p->model));
-    ORL_TRY(read_photos(p));
+    // The training photographs that the stereo was begun with; none for COLMAP's stereo, which has no parts.
+    if (orl_path_is_file(ORL_PATH(p->dir, "stereo/densify.json")))
+        ORL_TRY(orl_file_read_names(p->log, ORL_PATH(p->dir, "stereo/fusion.cfg"), &p->photos));
     size_t count = p->photos.count;
     p->parts = (int)((count + (size_t)photographs - 1) / (size_t)photographs);
     p->densify = orl_densify_settings(&p->params);
