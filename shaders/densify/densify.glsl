@@ -232,7 +232,7 @@ float view_cost(int view, vec3 plane, vec2 pixel)
 
 #ifdef GEOMETRIC
 // How consistent a plane is with the depth maps of the sources.
-struct opinion {
+struct consistency {
     uvec3 views;  // the three sources that agree best, in descending order
     vec3 weights; // of these sources; 0: fewer than three agree
     vec3 errors;  // reprojection errors of these sources, pixels
@@ -240,9 +240,9 @@ struct opinion {
     int against;  // number of sources that see through the plane to a clearly farther surface
 };
 
-opinion ask_sources(vec3 plane, vec2 pixel)
+consistency ask_sources(vec3 plane, vec2 pixel)
 {
-    opinion o = opinion(uvec3(0u), vec3(0.0), vec3(0.0), 0, 0);
+    consistency o = consistency(uvec3(0u), vec3(0.0), vec3(0.0), 0, 0);
     for (int view = 0; view < SOURCES; view++) {
         vec4 q = vec4(pixel, 1.0, plane.x);
         float depth = dot(forward[3 * view + 2], q);
@@ -282,7 +282,7 @@ opinion ask_sources(vec3 plane, vec2 pixel)
 // that sees a nearer surface adds no penalty, since the plane is occluded in it.
 float agreed_cost(vec3 plane, vec2 pixel, float best)
 {
-    opinion o = ask_sources(plane, pixel);
+    consistency o = ask_sources(plane, pixel);
     float total = o.weights.x + o.weights.y + o.weights.z;
     float uncertainty = LONELY * exp2(-total) + AGAINST * float(min(o.against, 3));
     if (!(total > 0.0)) {

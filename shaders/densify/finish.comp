@@ -71,10 +71,10 @@ void main()
     // raises it to at most twice that: each further source that agrees halves the rest.
     float confidence = 0.5 * (1.0 - 0.5 * cost / limit.x);
 #ifdef GEOMETRIC
-    opinion count = ask_sources(plane, pixel);
-    confidence *= 2.0 * max(1.0 - exp2(-float(count.agree - count.against)), 0.1);
-    keep = keep && count.against <= count.agree &&
-           (count.agree >= 2 || (count.agree == 1 && cost < limit.w));
+    consistency asked = ask_sources(plane, pixel);
+    confidence *= 2.0 * max(1.0 - exp2(-float(asked.agree - asked.against)), 0.1);
+    keep = keep && asked.against <= asked.agree &&
+           (asked.agree >= 2 || (asked.agree == 1 && cost < limit.w));
 #endif
     if (keep) {
         vec3 fitted = fitted_plane(at, plane);

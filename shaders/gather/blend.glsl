@@ -6,18 +6,18 @@
 #include "gather/sample/srgb.glsl"
 
 // A pixel's surface point.
-struct spot {
+struct surface_point {
     vec3 p;      // z 0: no surface
     float guess; // 1: on estimated background depth, else 0; no bool: docs/develop/shaders.md
 };
 
-bool is_guess(spot s)
+bool is_guess(surface_point s)
 {
     return s.guess > 0.0;
 }
 
 // A photograph that shows the surface point.
-struct sight {
+struct observation {
     float penalty;
     int index;  // index of the photograph
     vec2 pixel; // projection of the point into the photograph
@@ -26,27 +26,29 @@ struct sight {
 
 // The photographs that a pixel asks: the best one stands first, and the worst one, which is left out, last.
 struct ranking {
-    sight of[KEPT + 1];
+    observation of[KEPT + 1];
 };
 
 void clear(out ranking r)
 {
     for (int k = 0; k <= KEPT; k++)
-        r.of[k] = sight(NOT_SEEN, 0, vec2(0.0), 0.0);
+        r.of[k] = observation(NOT_SEEN, 0, vec2(0.0), 0.0);
 }
 
 // Puts the better one first. The code selects rather than branches, here and below: a branch costs a software
 // renderer a mask on every value that outlives it.
-void order(inout sight a, inout sight b)
+void order(inout observation a, inout observation b)
 {
     bool swap = b.penalty < a.penalty;
-    sight c = a;
-    a = sight(swap ? b.penalty : a.penalty, swap ? b.index : a.index, swap ? b.pixel : a.pixel, swap ? b.mip : a.mip);
-    b = sight(swap ? c.penalty : b.penalty, swap ? c.index : b.index, swap ? c.pixel : b.pixel, swap ? c.mip : b.mip);
+    observation c = a;
+    a = observation(swap ? b.penalty : a.penalty, swap ? b.index : a.index, swap ? b.pixel : a.pixel,
+                    swap ? b.mip : a.mip);
+    b = observation(swap ? c.penalty : b.penalty, swap ? c.index : b.index, swap ? c.pixel : b.pixel,
+                    swap ? c.mip : b.mip);
 }
 
 // Takes the c-th photograph, from 0. After the last one the ranking is complete.
-void rank(sight s, int c, inout ranking r)
+void rank(observation s, int c, inout ranking r)
 {
     r.of[c] = s;
     if (c > 0)
@@ -57,9 +59,9 @@ void rank(sight s, int c, inout ranking r)
 }
 
 // Weight of the k-th photograph.
-float sight_weight(ranking r, int k)
+float observation_weight(ranking r, int k)
 {
-    sight one = r.of[k];
+    observation one = r.of[k];
     float next = r.of[KEPT].penalty;
     // The weight is full until the penalty comes near that of the first photograph left out. A
     // trace of weight remains at equality, so that photographs that tie for the last place paint.
@@ -73,15 +75,15 @@ float sight_weight(ranking r, int k)
 // rather than of the best one; the square roots of light make differences roughly perceptually uniform. One fetch takes
 // about the same detail from all photographs of a surface, so the best one lends its own to the others, less the farther
 // it is from the consensus.
-vec4 blend(spot s, ranking r, out float varies, out float luma, out float blur)
+vec4 blend(surface_point s, ranking r, out float varies, out float luma, out float blur)
 {
     vec4 shown[KEPT], detail = vec4(0.0), vote = vec4(0.0), sum = vec4(0.0);
     float weights[KEPT];
     varies = 0.0;
     for (int k = 0; k < KEPT; k++) {
-        sight one = r.of[k];
+        observation one = r.of[k];
         shown[k] = photo_ranked(photo_at(one.index), k, one.pixel, one.mip, detail, varies);
-        weights[k] = sight_weight(r, k);
+        weights[k] = observation_weight(r, k);
         vote += vec4(sqrt(shown[k].rgb), 1.0) * sqrt(weights[k]);
     }
     vec3 mean = vote.rgb / max(vote.a, 1e-30);

@@ -1,6 +1,6 @@
 // How well a photograph can paint a surface point, for the painter `tiled` and for the page. The file that
 // includes this one defines
-//   float surface_share(photo source, spot s, vec4 seen, float z): what the photograph sees of a point on
+//   float surface_share(photo source, surface_point s, vec4 seen, float z): what the photograph sees of a point on
 //       a known surface;
 //   float surface_penalty(float penalty): the penalty of such a point.
 // RESTS: the backdrop rests in the photographs.
@@ -8,7 +8,7 @@
 
 // source: photograph i; i < 0: there is none. A photograph that cannot paint the point has the penalty
 // NOT_SEEN.
-sight consider(int i, photo source, spot s)
+observation consider(int i, photo source, surface_point s)
 {
     vec2 pixel;
     float z;
@@ -30,6 +30,6 @@ sight consider(int i, photo source, spot s)
     float sure = sees * photo_border(source, pixel) * (is_guess(s) ? photo_feather(source, pixel) : 1.0);
     bool paints = i >= 0 && s.p.z > 0.0 && inside && sees > 1e-4;
     // What does not paint is read all the same, with the weight 0.
-    return sight(paints ? penalty / sure : NOT_SEEN, max(i, 0), paints ? pixel : vec2(0.0),
+    return observation(paints ? penalty / sure : NOT_SEEN, max(i, 0), paints ? pixel : vec2(0.0),
                  paints ? photo_mip(source, z, s.p.z) : 0.0);
 }

@@ -18,7 +18,7 @@ layout(std430, binding = 1) readonly buffer tile_lists {
     int chosen[];
 };
 
-float surface_share(photo source, spot s, vec4 seen, float z)
+float surface_share(photo source, surface_point s, vec4 seen, float z)
 {
     return visible_surface(source, Point(s.p, vec3(0.0), false), seen, z);
 }
@@ -43,12 +43,12 @@ void main()
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
     if (corner.x >= view_size.x || corner.y >= view_size.y)
         return;
-    spot spots[4];
+    surface_point points[4];
     ranking rankings[4];
     for (int k = 0; k < 4; k++) {
         ivec2 at = corner + ivec2(k & 1, k >> 1);
         float stored = imageLoad(view_depth, at).r; // 0 outside
-        spots[k] = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
+        points[k] = surface_point(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
                         stored < 0.0 ? 1.0 : 0.0);
         clear(rankings[k]);
     }
@@ -58,7 +58,7 @@ void main()
         int i = chosen[list + c];
         photo source = photo_at(max(i, 0));
         for (int k = 0; k < 4; k++)
-            rank(consider(i, source, spots[k]), c, rankings[k]);
+            rank(consider(i, source, points[k]), c, rankings[k]);
     }
     float lumas[4], varies[4];
 #ifdef SPECKS
@@ -68,22 +68,22 @@ void main()
     float blur = 0.0; // the same for all four: single sharp pixels in a blurred area look like dirt
     for (int k = 0; k < 4; k++) {
         float own;
-        colors[k] = blend(spots[k], rankings[k], varies[k], lumas[k], own);
+        colors[k] = blend(points[k], rankings[k], varies[k], lumas[k], own);
 #ifdef SPECKS
         light[k] = colors[k].a > 0.0 ? max(speck_light(colors[k].rgb), 1.0 / 255.0) : 0.0;
 #endif
-        vec4 guessed = is_guess(spots[k]) ? colors[k] : vec4(0.0);
-        seed += colors[k] * (is_guess(spots[k]) ? 1.0 : ORL_SURFACE_SEED);
+        vec4 guessed = is_guess(points[k]) ? colors[k] : vec4(0.0);
+        seed += colors[k] * (is_guess(points[k]) ? 1.0 : ORL_SURFACE_SEED);
         guess += guessed;
         blur = guessed.a > 0.0 ? max(blur, own) : blur;
     }
     for (int k = 0; k < 4; k++) {
         bool has_color = colors[k].a > 0.0;
-        bool blurs = has_color && is_guess(spots[k]) && blur > 0.0;
+        bool blurs = has_color && is_guess(points[k]) && blur > 0.0;
         lumas[k] = has_color ? lumas[k] : -1.0;
         colors[k] = !has_color ? pixel_unpainted()
                     : blurs    ? pixel_to_blur(colors[k].rgb, blur)
-                               : pixel_finished(colors[k].rgb, !is_guess(spots[k]));
+                               : pixel_finished(colors[k].rgb, !is_guess(points[k]));
     }
     // Stores come last: a value that outlives a store costs a software renderer a load. Stores that
     // lie outside the picture do nothing.

@@ -32,14 +32,14 @@ float open_estimate(ivec2 cell)
 }
 
 // What the photographs say of a point.
-struct opinion {
+struct statistics {
     vec4 sum;      // colour * weight, weight
     float squares; // of colours, times weight
     float weights; // squares of the weights
     float past;    // weight of the photographs that see a surface behind the point
 };
 
-void ask(photo source, bool listed, vec3 p, inout opinion o)
+void ask(photo source, bool listed, vec3 p, inout statistics o)
 {
     vec2 pixel;
     float z;
@@ -62,15 +62,15 @@ void ask(photo source, bool listed, vec3 p, inout opinion o)
 
 // The share of the photographs that see past the point, of those in which nothing hides it, plus
 // how much the others differ: most if fewer than two are left.
-float cost_of(opinion o)
+float cost_of(statistics o)
 {
     float weight = max(o.sum.a, 1e-30);
-    float voices = weight * weight / max(o.weights, 1e-30); // effective number of photographs
+    float effective = weight * weight / max(o.weights, 1e-30); // effective number of photographs
     vec3 mean = o.sum.rgb / weight;
-    float variance = max(o.squares / weight - dot(mean, mean), 0.0) * voices /
-                     max(voices - 1.0, 0.5);
+    float variance = max(o.squares / weight - dot(mean, mean), 0.0) * effective /
+                     max(effective - 1.0, 0.5);
     float differ = min(sqrt(variance) / DIFFER_MAX, 1.0);
-    return DIFFER_COST * mix(1.0, differ, clamp(voices - 1.0, 0.0, 1.0)) +
+    return DIFFER_COST * mix(1.0, differ, clamp(effective - 1.0, 0.0, 1.0)) +
            o.past / max(o.past + o.sum.a, 1e-30);
 }
 
@@ -79,21 +79,21 @@ vec4 plane_costs(ivec2 cell, float estimate, int first)
 {
     vec2 centre = (vec2(cell) + 0.5) * float(CELL);
     vec3 ray = vec3((centre - view_focal.zw) / view_focal.xy, 1.0);
-    opinion opinions[AT_ONCE];
+    statistics planes[AT_ONCE];
     for (int n = 0; n < AT_ONCE; n++)
-        opinions[n] = opinion(vec4(0.0), 0.0, 0.0, 0.0);
+        planes[n] = statistics(vec4(0.0), 0.0, 0.0, 0.0);
     int c = 0, i = photo_to_ask(cell, 0);
     do { // the condition comes last: see tiled.comp
         photo source = photo_at(max(i, 0));
         for (int n = 0; n < AT_ONCE; n++)
             ask(source, i >= 0,
                 ray / max(estimate * plane_share(first + n), min_inverse),
-                opinions[n]);
+                planes[n]);
         c++;
         i = c < ASKED ? photo_to_ask(cell, c) : -1;
     } while (i >= 0);
     vec4 costs;
     for (int n = 0; n < AT_ONCE; n++)
-        costs[n] = cost_of(opinions[n]) + PRIOR * min(float(first + n) / FAR, 1.0);
+        costs[n] = cost_of(planes[n]) + PRIOR * min(float(first + n) / FAR, 1.0);
     return costs;
 }

@@ -13,7 +13,7 @@ layout(location = 0) out vec4 painted; // shared/pixel.glsl, finished
 // a: 0: nothing, else a half and half of how much that photograph varies about the place
 layout(location = 1) out vec4 source;
 
-float surface_share(photo source, spot s, vec4 seen, float z)
+float surface_share(photo source, surface_point s, vec4 seen, float z)
 {
     return photo_seen_share(seen, z);
 }
@@ -34,7 +34,7 @@ void main()
     source = vec4(0.0);
     if (stored == 0.0)
         return;
-    spot s = spot(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
+    surface_point s = surface_point(vec3((vec2(at) + 0.5 - view_focal.zw) / view_focal.xy, 1.0) * abs(stored),
                   guessed ? 1.0 : 0.0);
     ranking r;
     clear(r);
