@@ -73,7 +73,7 @@ static void darkness_is_not_blur(void **state)
     static struct orl_look looks[30];
     float limit;
     for (int i = 0; i < 30; i++)
-        looks[i] = look_at(16 * i, 0, 0, i < 10 ? 1 : 0.02);
+        looks[i] = i < 10 ? look_at(16 * i, 0, 0, 1) : look_at(0, 0, 0, 0.02);
     assert_int_equal(orl_look_blurred_below(NULL, looks, 30, &limit), ORL_OK);
     for (int i = 0; i < 10; i++)
         assert_true(looks[i].sharpness > limit && limit > looks[i].sharpness - 4);
