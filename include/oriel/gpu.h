@@ -190,7 +190,7 @@ struct orl_dispatch {
     const struct orl_buf *indirect; // NULL, or a buffer whose first three words are the work groups
 };
 #define ORL_PARAMS(block) .params = &(block), .params_size = sizeof(block)
-// What the program writes, later dispatches, draws and the functions above read.
+// Later dispatches, draws and the functions above see what the program has written.
 void orl_gpu_dispatch(struct orl_gpu *gpu, const struct orl_dispatch *dispatch);
 static inline unsigned orl_groups(size_t items, unsigned group_size)
 {

@@ -1,7 +1,7 @@
-// The search of oriel trim: states of a scene, what each loses and how long its frames take, and a ladder of steps from
-// one to the next. Its rungs are parts of the model, in the order of what they save for what they lose on the scenes that
-// were measured. Each is taken as far as the tolerances allow: parts with few levels one after the other, points and
-// photographs by bisection.
+// The search of oriel trim. A state is what is left of a scene; it is measured by what its pictures lose and how long its
+// frames take. A ladder of steps leads from one state to the next: its rungs are the parts of the model, first those that
+// saved most for what they lost on the scenes that were measured. Each part is made as small as the tolerances allow:
+// parts with few levels one level after the other, points and photographs by bisection.
 #include "eval/trim_search.h"
 
 #include <math.h>

@@ -72,7 +72,8 @@ void orl_program_cache_store(struct orl_gpu *gpu, const struct shader_source *so
 bool orl_prog_use(struct orl_gpu *gpu, struct orl_prog *prog, const void *params, size_t size);
 // Binds textures and images, ORL_BINDINGS_MAX of each, as orl_dispatch has them.
 void orl_gpu_bind(const struct orl_tex *const *textures, const struct orl_tex *const *images, int layer);
-// Makes what a program has written there for the next ones. What the host asks for has barriers of its own.
+// Makes what a program has written visible to the programs that follow. Reads and writes by the host have barriers
+// of their own.
 void orl_gpu_barrier(void);
 void orl_gpu_free_programs(struct orl_gpu *gpu);
 

@@ -32,7 +32,7 @@ struct orl_raster {
     const struct orl_tex *targets[ORL_RASTER_TARGETS_MAX]; // by output location; floating point
     const struct orl_tex *depth;   // GL_DEPTH_COMPONENT32F; NULL: no depth test
 };
-// Errors are sticky, as those of orl_gpu_dispatch, and likewise what it writes is there for what follows.
+// As after orl_gpu_dispatch, errors are sticky, and later programs see what the draw has written.
 void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *raster);
 
 #endif
