@@ -29,21 +29,22 @@ awk -v full="$(value airieau psnr_db)" -v covered="$(value airieau psnr_covered_
     -v points="$(value points psnr_covered_db)" \
     'BEGIN { exit !(full >= 22 && covered >= 24 && covered >= points + 1) }' ||
     { echo "worse than it has to be" >&2; exit 1; }
-# The other papers' methods, on splats: about a decibel below what they had.
+# The other papers' methods, on splats. Six calibrations of these photographs gave `princ` 21.5 to
+# 22.8 dB and the others a spread of half a decibel; each floor is 0.7 dB below the least.
 while read -r method least; do
     awk -v is="$(value "$method" psnr_db)" -v least="$least" 'BEGIN { exit !(is >= least) }' ||
         { echo "$method has $(value "$method" psnr_db) dB instead of $least" >&2; exit 1; }
 done <<'END'
-ulr 23.5
-orzan-view 23.0
-orzan-surface 22.0
-orzan-shadow 23.0
-princ 21.5
-li 21.5
-goldluecke 23.0
+ulr 24.0
+orzan-view 23.6
+orzan-surface 22.5
+orzan-shadow 23.4
+princ 20.8
+li 22.2
+goldluecke 23.5
 END
 # The default method, which is to be far better than any other.
 awk -v full="$(value oriel psnr_db)" -v ssim="$(value oriel ssim)" \
     -v airieau="$(value airieau psnr_db)" \
-    'BEGIN { exit !(full >= 27.5 && ssim >= 0.91 && full >= airieau + 2) }' ||
+    'BEGIN { exit !(full >= 29 && ssim >= 0.91 && full >= airieau + 2) }' ||
     { echo "the default method is worse than it has to be" >&2; exit 1; }
