@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/cholesky.h"
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "scene/upright.h"
@@ -12,6 +13,7 @@ enum {
     POINTS_MAX = 4096,
     PHOTOS_MAX = 64,
     TRIES = 8,   // planes for each point
+    FITS = 8,    // of the best plane to the points in it
     STEP = 1009, // from one point of a plane to the next, in the sample
 };
 
@@ -123,6 +125,11 @@ static double stood_height(const struct sample *s, double plane[4])
     return level && least > 0 && sqrt(squares) <= HEIGHT_SPREAD * mean ? mean : 0;
 }
 
+static bool lies_in(const double plane[4], double tolerance, const double at[3], const double normal[3])
+{
+    return fabs(plane_height(plane, at)) <= tolerance && orl_dot3(normal, plane) > ALIGNED_COSINE;
+}
+
 // Share of the points that support the plane as ground; negative: they contradict it.
 static double score(const struct sample *s, const double plane[4], double height)
 {
@@ -133,7 +140,7 @@ static double score(const struct sample *s, const double plane[4], double height
         const double *at = s->position[i];
         double off = plane_height(plane, at);
         beneath += off < -BENEATH * tolerance;
-        if (fabs(off) > tolerance || !(orl_dot3(s->normal[i], plane) > ALIGNED_COSINE))
+        if (!lies_in(plane, tolerance, at, s->normal[i]))
             continue;
         counted += 1 - off * off / (tolerance * tolerance);
         on++;
@@ -175,6 +182,53 @@ static bool candidate(const struct sample *s, int i, int try, double plane[4])
     return length > 0 && isfinite(length);
 }
 
+// Moves the plane to the weighted least squares of all points that lie in it: its normal becomes the direction in
+// which they vary least, by a step of inverse iteration. False when the points determine no plane.
+static bool fit(const struct sample *s, const struct orl_points *points, double plane[4])
+{
+    const double *eye = s->centres[0]; // near the points, however far the origin is
+    double variance[9] = {0}, mean[3] = {0}, total = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        double at[3], normal[3], from_eye[3];
+        for (int k = 0; k < 3; k++) {
+            at[k] = (double)points->position[i][k];
+            normal[k] = (double)points->normal[i][k];
+            from_eye[k] = at[k] - eye[k];
+        }
+        if (!lies_in(plane, s->tolerance, at, normal))
+            continue;
+        double weight = seen_size(s, points, i);
+        total += weight;
+        for (int k = 0; k < 3; k++)
+            mean[k] += weight * from_eye[k];
+        for (int k = 0; k < 9; k++)
+            variance[k] += weight * from_eye[k / 3] * from_eye[k % 3];
+    }
+    for (int k = 0; k < 9; k++)
+        variance[k] -= mean[k / 3] * mean[k % 3] / total;
+    if (!orl_cholesky_solve(variance, plane, 3))
+        return false;
+    orl_normalize3(plane);
+    plane[3] = -orl_dot3(plane, mean) / total - orl_dot3(plane, eye);
+    return true;
+}
+
+// Keeps the plane, fitted to all points in it, unless it is no ground any more. Three points are as noisy as stereo is,
+// and a height that is off by a twentieth costs up to half a decibel.
+static void keep_fitted(const struct sample *s, const struct orl_points *points, struct orl_ground *ground)
+{
+    double plane[4];
+    memcpy(plane, ground->plane, sizeof plane);
+    for (int i = 0; i < FITS; i++)
+        if (!fit(s, points, plane))
+            return;
+    double height = stood_height(s, plane);
+    if (!(height > 0 && score(s, plane, height) > SCORE_MIN))
+        return;
+    ground->height = height;
+    memcpy(ground->plane, plane, sizeof plane);
+}
+
 enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scene *scene,
                                 struct orl_ground *ground)
 {
@@ -196,6 +250,8 @@ enum orl_result orl_ground_find(const struct orl_log *log, const struct orl_scen
         for (int k = 0; k < 4; k++)
             ground->plane[k] = plane[k];
     }
+    if (ground->height > 0)
+        keep_fitted(&s, &scene->points, ground);
 finish:
     free(s.position);
     free(s.normal);
