@@ -27,7 +27,7 @@ static const double UPWARD_MIN = 0.85;
 // Least cosine between the plane's normal and what the photographs have above: a ceiling is no ground.
 static const double UP_MIN = -0.5;
 // As fractions of all points.
-static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.005;
+static const double BENEATH_MAX = 0.005, SCORE_MIN = 0.003;
 // Smallest cosine of a point's normal with the plane's for the point to lie in it. The feet of facades lie near a
 // plane, and so do the lower edges of a thing on a turntable.
 static const double ALIGNED_COSINE = 0.7;
