@@ -213,8 +213,9 @@ static bool fit(const struct sample *s, const struct orl_points *points, double 
     return true;
 }
 
-// Keeps the plane, fitted to all points in it, unless it is no ground any more. Three points are as noisy as stereo is,
-// and a height that is off by a twentieth costs up to half a decibel.
+// Fits the plane to all points that lie in it, and takes the result unless that is no ground. The plane that was found
+// goes through three points, which are as noisy as stereo is; a height that is wrong by a twentieth costs up to half a
+// decibel.
 static void keep_fitted(const struct sample *s, const struct orl_points *points, struct orl_ground *ground)
 {
     double plane[4];

@@ -11,7 +11,8 @@
 static struct orl_gpu *gpu;
 enum { SIDE = 96, PHOTOS = 3, TRIES = 2000 };
 
-// The linker lets these stand in the way of each file of a photograph. Masks pass: a hull waits for them.
+// The test is linked with --wrap: orl_picture_read is the function below, which holds the files of photographs back
+// while files_held is true. Masks are not held back, since drawing waits for them.
 static pthread_mutex_t files_lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t files_change = PTHREAD_COND_INITIALIZER;
 static bool files_held;
