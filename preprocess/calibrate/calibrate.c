@@ -40,6 +40,7 @@ struct calibration {
     struct orl_match_summary pairs;
     enum orl_mapper mapper;
     bool straight;       // distortion is taken to be none from now on
+    bool whole;          // features are taken of whole photographs from now on, whatever their masks
     int tries;           // mapper runs, for folder names
     int features;        // counts the databases: a new one has other features and numbers
 };
@@ -189,30 +190,31 @@ static enum orl_result set_mark(const struct calibration *c, bool matched)
     return orl_job_write_key(c->job, ORL_STAGE_CALIBRATE, WORK "/matched");
 }
 
-static enum orl_result restart_database(struct calibration *c)
-{
-    c->features++;
-    ORL_TRY(orl_job_remove(c->job, WORK "/database.db"));
-    ORL_TRY(orl_job_remove(c->job, WORK "/database.db-wal"));
-    return orl_job_remove(c->job, WORK "/database.db-shm");
-}
-
 static enum orl_result extract_all(const struct calibration *c, bool costly)
 {
     ORL_TRY(orl_features_link_masks(c->job));
     return orl_features_extract(c->job, &c->groups, &(struct orl_features_run){
-        .database = ORL_CALIBRATE_STEM, .parts = 1, .costly = costly});
+        .database = ORL_CALIBRATE_STEM, .parts = 1, .costly = costly, .whole = c->whole});
+}
+
+// A new database of other features.
+static enum orl_result begin_again(struct calibration *c, enum orl_matching way, bool costly)
+{
+    c->features++;
+    ORL_TRY(set_mark(c, false));
+    ORL_TRY(orl_job_remove(c->job, WORK "/database.db"));
+    ORL_TRY(orl_job_remove(c->job, WORK "/database.db-wal"));
+    ORL_TRY(orl_job_remove(c->job, WORK "/database.db-shm"));
+    ORL_TRY(extract_all(c, costly));
+    ORL_TRY(orl_match(c->job, way, costly, NULL, NULL));
+    return map(c, false, NULL);
 }
 
 // More features that bear wider baselines, for sets that hardly overlap.
 static enum orl_result try_costly(struct calibration *c)
 {
     say(c, "trying affine-shape features and guided matching");
-    ORL_TRY(set_mark(c, false));
-    ORL_TRY(restart_database(c));
-    ORL_TRY(extract_all(c, true));
-    ORL_TRY(orl_match(c->job, ORL_MATCHING_EXHAUSTIVE, true, NULL, NULL));
-    ORL_TRY(map(c, false, NULL));
+    ORL_TRY(begin_again(c, ORL_MATCHING_EXHAUSTIVE, true));
     return enough(c) ? ORL_OK : map(c, true, NULL);
 }
 
@@ -269,6 +271,20 @@ static enum orl_result match_all(struct calibration *c)
     return map(c, false, NULL);
 }
 
+// A plain subject alone may have too few features. Where it stood still, its surroundings tell as well from where it was
+// photographed; on a turntable they tell nothing, and fewer photographs register.
+static enum orl_result pass_over_masks(struct calibration *c)
+{
+    if (!c->job->params->masks_dir || most(c))
+        return ORL_OK;
+    say(c, "taking features of whole photographs, not of what masks show alone");
+    c->whole = true;
+    ORL_TRY(begin_again(c, c->way, false));
+    ORL_TRY(join_more(c));
+    c->whole = c->best.features == c->features;
+    return ORL_OK;
+}
+
 static enum orl_result try_hard(struct calibration *c)
 {
     enum orl_result result = map_one_by_one(c);
@@ -280,6 +296,7 @@ static enum orl_result try_hard(struct calibration *c)
         say(c, "starting from narrower baselines and fewer inliers");
         result = map(c, true, NULL);
     }
+    ORL_THEN(result, pass_over_masks(c));
     if (result == ORL_OK && !enough(c) && c->job->source_count <= COSTLY_MAX) {
         result = try_costly(c);
         ORL_THEN(result, join_more(c));

@@ -135,7 +135,7 @@ static enum orl_result extract(struct orl_job *job, const struct pass *pass, con
     orl_colmap_arg(&colmap, size > 1 ? "--ImageReader.single_camera"
                                    : "--ImageReader.single_camera_per_image", "1");
     orl_colmap_arg(&colmap, "--ImageReader.camera_model", "%s", rich ? "OPENCV" : "SIMPLE_RADIAL");
-    if (job->params->masks_dir)
+    if (job->params->masks_dir && !pass->run->whole)
         orl_colmap_arg(&colmap, "--ImageReader.mask_path", "%s/" MASKS, job->dir);
     feature_settings(job, pass, &colmap);
     return orl_job_colmap(job, &colmap);

@@ -24,6 +24,7 @@ struct orl_features_run {
     const char *database;
     int part, parts;
     bool costly; // more features that bear wider baselines
+    bool whole;  // masks are passed over
 };
 enum orl_result orl_features_extract(struct orl_job *job, const struct orl_camera_groups *groups,
                                      const struct orl_features_run *run) ORL_CHECK_RESULT;

@@ -142,6 +142,16 @@ points() {
 }
 masked=$(points "$work/masked")
 
+# Where masks leave too few features, those of whole photographs place the photographs; where they place no more, the
+# model of the masked ones stays. Points are made of what masks show all the same.
+DOUBLE_MASKED_ALONE="3.png 4.png" run 0 prepare "$work/p" --out "$work/whole" --masks "$work/m"
+says "3 of 5 photographs register; taking features of whole photographs"
+prints "5 used, 5 registered"
+[ "$(points "$work/whole")" = "$masked" ] || fail "stereo does without masks where features do"
+DOUBLE_ALONE="3.png 4.png" run 0 prepare "$work/p" --out "$work/whole-too" --masks "$work/m" --until undistort
+says "taking features of whole photographs"
+[ "$(grep -c mask_path "$work/whole-too/logs/colmap.log")" = 1 ] || fail "masks were passed over at first"
+
 # A scene whose mask is missing does not open; without masks the folder goes.
 cp -r "$work/masked" "$work/lacking"
 rm "$work/lacking/masks/1.png.png"
