@@ -17,6 +17,9 @@ struct orl_profile {
     bool grey; // one channel
 };
 
+// Pictures of grey have three equal channels, the first of which counts.
+#define GREY_OF_3(type) ((type) | EXTRA_SH(2))
+
 static cmsHPROFILE make_rgb(const struct orl_primaries *p, double gamma)
 {
     const double srgb[5] = {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
@@ -78,7 +81,8 @@ static struct orl_profile *create(const struct orl_log *log, const char *path, c
     profile->from = from;
     profile->grey = space == cmsSigGrayData;
     if (profile->grey || space == cmsSigRgbData)
-        profile->to_linear = make_transform(profile, profile->grey ? TYPE_GRAY_FLT : TYPE_RGB_FLT, 1, TYPE_RGB_FLT);
+        profile->to_linear = make_transform(profile, profile->grey ? GREY_OF_3(TYPE_GRAY_FLT) : TYPE_RGB_FLT, 1,
+                                            TYPE_RGB_FLT);
     if (!profile->to_linear)
         orl_logf(log, ORL_LOG_WARNING, "%s: its %s", path, unusable);
     if (!profile->to_linear || (!exact && is_srgb(profile)))
@@ -118,11 +122,7 @@ void orl_profile_to_linear(const struct orl_profile *profile, struct orl_image *
     size_t width = (size_t)image->width;
     for (size_t y = 0; y < (size_t)image->height; y++) {
         float *row = image->f32 + 3 * y * width;
-        // The one channel of grey goes to the row's end, where three floats overwrite it once read.
-        float *from = profile->grey ? row + 2 * width : row;
-        for (size_t i = 0; profile->grey && i < width; i++)
-            from[i] = row[3 * i];
-        cmsDoTransform(profile->to_linear, from, row, (cmsUInt32Number)width);
+        cmsDoTransform(profile->to_linear, row, row, (cmsUInt32Number)width);
         for (size_t i = 0; i < 3 * width; i++)
             row[i] = row[i] > 0 ? row[i] : 0;
     }
@@ -132,14 +132,12 @@ enum orl_result orl_profile_to_srgb(const struct orl_log *log, const struct orl_
                                     struct orl_image *image)
 {
     size_t width = (size_t)image->width;
-    cmsHTRANSFORM transform = make_transform(profile, profile->grey ? TYPE_GRAY_8 : TYPE_RGB_8, 0, TYPE_RGB_8);
+    cmsHTRANSFORM transform = make_transform(profile, profile->grey ? GREY_OF_3(TYPE_GRAY_8) : TYPE_RGB_8, 0, TYPE_RGB_8);
     if (!transform)
         return orl_fail(log, ORL_ERR_MEMORY, "no memory to convert colours");
     for (size_t y = 0; y < (size_t)image->height; y++) {
-        uint8_t *row = image->u8 + 3 * y * width, *from = profile->grey ? row + 2 * width : row; // as above
-        for (size_t i = 0; profile->grey && i < width; i++)
-            from[i] = row[3 * i];
-        cmsDoTransform(transform, from, row, (cmsUInt32Number)width);
+        uint8_t *row = image->u8 + 3 * y * width;
+        cmsDoTransform(transform, row, row, (cmsUInt32Number)width);
     }
     cmsDeleteTransform(transform);
     return ORL_OK;
