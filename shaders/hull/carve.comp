@@ -10,10 +10,11 @@ layout(binding = 0) uniform sampler2D silhouette; // signed distance, pixels, po
 
 void main()
 {
-    int index = int(gl_GlobalInvocationID.x);
-    if (index >= side * side * side)
+    ivec2 id = ivec2(gl_GlobalInvocationID.xy); // of one dimension, there would be more groups than some devices have
+    if (id.x >= side * side)
         return;
-    vec4 at = vec4(vec3(index % side, index / side % side, index / (side * side)) + 0.5, 1.0);
+    int index = id.x + side * side * id.y;
+    vec4 at = vec4(vec3(id.x % side, id.x / side, id.y) + 0.5, 1.0);
     vec3 q = vec3(dot(camera_from_voxels[0], at), dot(camera_from_voxels[1], at),
                   dot(camera_from_voxels[2], at));
     float apart = -q.z; // a camera sees nothing behind it

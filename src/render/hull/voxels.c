@@ -102,8 +102,7 @@ static struct carve_block carve_params(const struct cone *cone, const struct orl
 }
 
 static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
-                                 const struct carve_block *block, size_t voxels,
-                                 struct orl_buf *field)
+                                 const struct carve_block *block, struct orl_buf *field)
 {
     struct orl_tex *tex = NULL;
     const struct orl_tex_params params = {.width = cone->distance.width,
@@ -113,7 +112,7 @@ static enum orl_result carve_one(struct orl_gpu *gpu, const struct cone *cone,
     orl_tex_write(tex, GL_RED, GL_FLOAT, cone->distance.data);
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "hull/carve.comp", NULL, NULL), ORL_PARAMS(*block),
-        .bufs = {field}, .textures = {tex}, .size = {(int)voxels}});
+        .bufs = {field}, .textures = {tex}, .size = {block->side * block->side, block->side}});
     orl_tex_destroy(gpu, &tex);
     return ORL_OK;
 }
@@ -131,7 +130,7 @@ enum orl_result orl_cones_carve(struct orl_gpu *gpu, const struct cones *cones,
     enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < cones->count; i++) {
         struct carve_block block = carve_params(&cones->all[i], &cones->cube);
-        result = carve_one(gpu, &cones->all[i], &block, voxels, *field);
+        result = carve_one(gpu, &cones->all[i], &block, *field);
     }
     if (result != ORL_OK)
         orl_buf_destroy(gpu, field);
