@@ -103,7 +103,7 @@ void orl_buf_read(const struct orl_buf *buf, size_t size, void *data);
 // Sets every 32-bit word to `word`.
 void orl_buf_fill(struct orl_buf *buf, uint32_t word);
 
-// Creates a texture filled with zeros. Texture coordinates clamp to the edge.
+// Creates a texture, filled with zeros unless it is compressed. Texture coordinates clamp to the edge.
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out) ORL_CHECK_RESULT;
 // One of several textures of the same size.
@@ -142,8 +142,8 @@ void orl_tex_copy_layer(const struct orl_tex *from, int level, int width, int he
 // rounded up. Oriel encodes them (gpu/compress.h). Alpha is lost. Waits for the device.
 enum orl_result orl_tex_compress_layer(struct orl_gpu *gpu, const struct orl_tex *from,
                                        struct orl_tex *to, int layer) ORL_CHECK_RESULT;
-// Sets every channel of every layer of level 0 to 0, of formats that are not integers.
-void orl_tex_clear(struct orl_tex *tex);
+// Sets level 0 of a layer (0 without layers) to 0; not of compressed formats.
+void orl_tex_clear(struct orl_tex *tex, int layer);
 // Sets every texel of level 0 of a GL_R32UI texture to `word`.
 void orl_tex_fill(struct orl_tex *tex, uint32_t word);
 // Fills the coarser levels of one layer (0 without layers) from its level 0, which shaders may have

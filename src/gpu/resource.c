@@ -5,19 +5,24 @@
 #include "gpu/compress.h"
 #include "gpu/internal.h"
 
-// What the texels of a format take: blocks of side x side texels have so many bytes.
+// What the texels of a format take: blocks of side x side texels have so many bytes. zeros: the client format of what
+// clears it; 0: nothing can.
 struct texel_format {
     GLenum format;
     unsigned char bytes, side;
+    GLenum zeros;
 };
 
 static const struct texel_format *texel_format(GLenum format)
 {
     static const struct texel_format all[] = {
-        {GL_R8, 1, 1}, {GL_RG8, 2, 1}, {GL_RGBA8, 4, 1}, {GL_SRGB8_ALPHA8, 4, 1}, {GL_R16F, 2, 1},
-        {GL_RGBA16F, 8, 1}, {GL_R32F, 4, 1}, {GL_RGBA32F, 16, 1}, {GL_DEPTH_COMPONENT32F, 4, 1},
-        {GL_R8UI, 1, 1}, {GL_R32I, 4, 1}, {GL_R32UI, 4, 1}, {GL_RG32UI, 8, 1}, {GL_RGBA32UI, 16, 1},
-        {GL_COMPRESSED_RED_RGTC1, 8, 4}, {GL_COMPRESSED_RG_RGTC2, 16, 4}, {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 4},
+        {GL_R8, 1, 1, GL_RED}, {GL_RG8, 2, 1, GL_RED}, {GL_RGBA8, 4, 1, GL_RED}, {GL_SRGB8_ALPHA8, 4, 1, GL_RED},
+        {GL_R16F, 2, 1, GL_RED}, {GL_RGBA16F, 8, 1, GL_RED}, {GL_R32F, 4, 1, GL_RED}, {GL_RGBA32F, 16, 1, GL_RED},
+        {GL_DEPTH_COMPONENT32F, 4, 1, GL_DEPTH_COMPONENT}, {GL_R8UI, 1, 1, GL_RED_INTEGER},
+        {GL_R32I, 4, 1, GL_RED_INTEGER}, {GL_R32UI, 4, 1, GL_RED_INTEGER}, {GL_RG32UI, 8, 1, GL_RED_INTEGER},
+        {GL_RGBA32UI, 16, 1, GL_RED_INTEGER},
+        {GL_COMPRESSED_RED_RGTC1, 8, 4, 0}, {GL_COMPRESSED_RG_RGTC2, 16, 4, 0},
+        {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 8, 4, 0},
     };
     static const struct texel_format other = {.bytes = 16, .side = 1}; // an upper bound, used for accounting only
     for (size_t i = 0; i < ORL_COUNT(all); i++)
@@ -159,6 +164,17 @@ static void set_sampling(GLuint id, bool linear, int levels)
     glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
+// Storage that a driver gives anew may hold what other textures, or programs, have left there.
+static void fill_zeros(const struct orl_tex *tex, int level, int layer, int layers)
+{
+    const struct orl_tex_params *p = &tex->params;
+    const GLenum format = texel_format(p->format)->zeros;
+    const GLenum type = format == GL_RED_INTEGER ? GL_UNSIGNED_INT : GL_FLOAT;
+    if (format)
+        glClearTexSubImage(tex->id, level, 0, 0, layer, level_side(p->width, level), level_side(p->height, level), layers,
+                           format, type, NULL);
+}
+
 enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params *params,
                                struct orl_tex **out)
 {
@@ -184,6 +200,8 @@ enum orl_result orl_tex_create(struct orl_gpu *gpu, const struct orl_tex_params 
     }
     set_sampling(tex->id, p->linear, p->levels);
     glObjectLabel(GL_TEXTURE, tex->id, -1, p->tag);
+    for (int level = 0; level < p->levels; level++)
+        fill_zeros(tex, level, 0, p->layers ? p->layers : 1);
     orl_gpu_count(gpu, tex->params.owner, tex->params.tag, (ptrdiff_t)tex->bytes, 1);
     if (!orl_gpu_check_errors(gpu, p->tag)) {
         orl_logf(gpu->log, ORL_LOG_ERROR, "%s: no texture of %dx%d, %zu bytes on the device",
@@ -251,10 +269,10 @@ void orl_tex_read(const struct orl_tex *tex, int level, GLenum format, GLenum ty
     glGetTextureImage(tex->id, level, format, type, (GLsizei)size, pixels);
 }
 
-void orl_tex_clear(struct orl_tex *tex)
+void orl_tex_clear(struct orl_tex *tex, int layer)
 {
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT); // after shader writes of earlier passes
-    glClearTexImage(tex->id, 0, GL_RED, GL_FLOAT, NULL);
+    fill_zeros(tex, 0, layer, 1);
 }
 
 void orl_tex_fill(struct orl_tex *tex, uint32_t word)

@@ -81,7 +81,7 @@ static void a_write_comes_after_a_clear(void **state)
         const uint32_t data[4] = {i, 1, 1, 0};
         uint32_t seen[5];
         for (int k = 0; k < 4; k++)
-            orl_tex_clear(work);
+            orl_tex_clear(work, 0);
         orl_buf_fill(words, 7);
         orl_buf_write(words, 0, sizeof data, data);
         orl_buf_read(words, sizeof seen, seen);

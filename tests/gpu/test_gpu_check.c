@@ -38,7 +38,7 @@ static enum orl_result run(const char *shader, uint32_t word)
     assert_int_equal(orl_buf_create(gpu, ORL_OWNER_FRAME, "rows", 8 * sizeof(float), NULL, GL_R32F, &other),
                      ORL_OK);
     assert_int_equal(orl_tex_create(gpu, &params, &tex), ORL_OK);
-    orl_tex_clear(tex); // some drivers leave what was in the memory
+    orl_tex_clear(tex, 0); // some drivers leave what was in the memory
     struct { uint32_t word, rest[3]; } block = {word, {0}};
     struct orl_dispatch d = {.prog = orl_prog_get(gpu, "fill/fill_pull.comp", NULL, NULL),
                              ORL_PARAMS(block), .bufs = {buf}, .textures = {tex}, .images = {tex, &other->texels}};

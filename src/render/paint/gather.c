@@ -267,7 +267,7 @@ void orl_gather_clear(const struct frame *frame)
                                        frame->paint->states[1]};
     for (size_t i = 0; i < ORL_COUNT(targets); i++)
         if (targets[i])
-            orl_tex_clear(targets[i]);
+            orl_tex_clear(targets[i], 0);
 }
 
 enum orl_result orl_gather_underpaint(const struct frame *frame)

@@ -32,7 +32,7 @@ static void gather_tiles(const struct frame *frame, struct orl_dispatch d)
     // One invocation handles 2x2 pixels.
     d.size[0] = (frame->surface.width + 1) / 2;
     d.size[1] = (frame->surface.height + 1) / 2;
-    orl_tex_clear(frame->paint->fill.guesses);
+    orl_tex_clear(frame->paint->fill.guesses, 0);
     orl_gpu_pass(frame->gpu, "gather", &d);
 }
 
@@ -44,9 +44,9 @@ static enum orl_result paint_chosen(const struct frame *frame)
     ORL_TRY(orl_buf_fit(frame->gpu, ORL_OWNER_FRAME, "photographs of tiles",
                         across * down * ORL_CANDIDATES * sizeof(int), 0, &g->tile_lists));
     if (frame->chosen_count == 0 && !frame->progressive) {
-        orl_tex_clear(frame->picture);
+        orl_tex_clear(frame->picture, 0);
         if (orl_edges_find_specks(frame))
-            orl_tex_clear(frame->paint->edges.painted);
+            orl_tex_clear(frame->paint->edges.painted, 0);
         return ORL_OK;
     }
     struct gather_block block = orl_gather_prepare(frame, 0, frame->chosen_count);

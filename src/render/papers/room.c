@@ -32,7 +32,7 @@ static void project(const struct frame *frame, struct orl_tex *room, bool backgr
     snprintf(defines, sizeof defines, "SWEEP 0\nROOM %d\n%s",
              frame->params->paint->layers ? 2 : 1,
              frame->scene->room.known ? "" : "SHELL 1\n");
-    orl_gpu_dispatch(frame->gpu, &(struct orl_dispatch){
+    orl_gpu_pass(frame->gpu, "room", &(struct orl_dispatch){
         .prog = orl_gather_prog(frame, "gather/gather.comp", defines), ORL_PARAMS(block),
         .textures = {backgrounds ? frame->photos->background : frame->photos->color,
                      frame->photos->depth, [ORL_PHOTO_CHROMA] = frame->photos->chroma},
@@ -88,12 +88,11 @@ enum orl_result orl_room_paint(struct frame *frame, struct orl_tex *room, size_t
     if (backgrounds)
         snprintf(params.visibility, sizeof params.visibility, "none");
     *absent = 0;
-    orl_tex_clear(room);
+    orl_tex_clear(room, 0);
     enum orl_result result = orl_select_all.choose(&walls);
     if (result == ORL_OK && frame->progressive)
         result = keep_present(&walls, backgrounds, absent);
     size_t batch = (size_t)frame->photos->slot_count;
-    orl_pass_begin(frame->gpu, "room");
     for (size_t first = 0; result == ORL_OK && first < walls.chosen_count; first += batch) {
         size_t left = walls.chosen_count - first, count = left < batch ? left : batch;
         if (!frame->progressive)
@@ -101,10 +100,11 @@ enum orl_result orl_room_paint(struct frame *frame, struct orl_tex *room, size_t
         if (result == ORL_OK)
             project(&walls, room, backgrounds, first, count);
     }
-    if (result == ORL_OK)
-        orl_fill_room(frame, room);
+    ORL_TRY(result);
+    orl_pass_begin(frame->gpu, "room");
+    orl_fill_room(frame, room);
     orl_pass_end(frame->gpu);
-    return result;
+    return ORL_OK;
 }
 
 void orl_room_show(const struct frame *frame, const struct orl_tex *room)

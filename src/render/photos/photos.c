@@ -298,10 +298,18 @@ void orl_photos_follow_time_step(struct photos *photos)
     photos->time_step = photos->scene->frame;
 }
 
+// Of a photograph smaller than its slot, what is beside it would bleed into the mipmaps.
+static void clear_beside(int width, int height, struct orl_tex *tex, int layer)
+{
+    if (width < tex->params.width || height < tex->params.height)
+        orl_tex_clear(tex, layer);
+}
+
 // Writes sRGB-encoded RGB, or radiance times confidence, and the confidence.
 static void write_pixels(const struct orl_image *image, struct orl_tex *tex, int layer)
 {
     bool radiance = image->type == ORL_PIXEL_F32;
+    clear_beside(image->width, image->height, tex, layer);
     orl_tex_write_layer(tex, layer, image->width, image->height, radiance ? GL_RGBA : GL_RGB,
                         radiance ? GL_FLOAT : GL_UNSIGNED_BYTE, image->data);
 }
@@ -321,8 +329,9 @@ static enum orl_result upload_smaller(struct orl_gpu *gpu, const struct orl_imag
         level++;
     write_pixels(image, full, 0);
     orl_tex_make_mipmaps(full, 0);
-    orl_tex_copy_layer(full, level, divided(image->width, divide),
-                       divided(image->height, divide), to, slot);
+    const int width = divided(image->width, divide), height = divided(image->height, divide);
+    clear_beside(width, height, to, slot);
+    orl_tex_copy_layer(full, level, width, height, to, slot);
     orl_tex_destroy(gpu, &full);
     return ORL_OK;
 }
@@ -356,10 +365,8 @@ static enum orl_result make_radiance(const struct orl_log *log, struct photos *p
 // Makes the texture in which photographs are complete before they are compressed.
 static enum orl_result make_loading(struct orl_gpu *gpu, struct photos *photos)
 {
-    if (photos->loading) { // remains of an earlier photograph would bleed into the mipmaps
-        orl_tex_clear(photos->loading);
+    if (photos->loading)
         return ORL_OK;
-    }
     struct orl_tex_params params = photos->color_params;
     params.layers = 0;
     params.format = GL_RGBA8;
