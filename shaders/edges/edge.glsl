@@ -24,7 +24,7 @@ vec3 edge_mean(vec3 around[9], float aside)
 {
     vec3 sum = vec3(0.0);
     for (int n = 0; n < 9; n++)
-        sum += sqrt(around[n]) * (n % 3 != 1 ? aside : 1.0) * (n / 3 != 1 ? aside : 1.0);
+        sum += sqrt(max(around[n], 0.0)) * (n % 3 != 1 ? aside : 1.0) * (n / 3 != 1 ? aside : 1.0);
     sum /= (1.0 + 2.0 * aside) * (1.0 + 2.0 * aside);
     return sum * sum;
 }

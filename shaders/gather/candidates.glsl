@@ -53,7 +53,7 @@ void candidate_insert(float penalty, int photo, inout float best[ORL_CANDIDATES]
     }
 }
 
-// The photographs of a tile, of the first `photos`, of which there is one at least: best first, -1: none.
+// The photographs of a tile, of the first `photos`: best first, -1: none.
 void list_candidates(ivec2 tile, int side, ivec2 size, int photos, out int index[ORL_CANDIDATES])
 {
     vec3 points[ACROSS * ACROSS];
@@ -70,7 +70,7 @@ void list_candidates(ivec2 tile, int side, ivec2 size, int photos, out int index
         photo source = photo_at(i);
         for (int s = 0; s < ACROSS * ACROSS; s++)
             candidate_sample(source, points[s], guess[s], least);
-        candidate_insert(least, i, best, index);
+        candidate_insert(i < photos ? least : NOT_SEEN, i, best, index);
         i++;
     } while (i < photos);
 }

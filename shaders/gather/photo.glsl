@@ -46,8 +46,8 @@ layout(binding = ORL_PHOTO_CHROMA) uniform sampler2DArray photo_chroma;
 vec4 photo_depths(photo source, vec2 pixel)
 {
     vec2 at = pixel * (source.size.zw / source.size.xy);
-    // Clamps to the part of the slot that the photograph covers.
-    at = clamp(at, vec2(0.5), source.size.zw - 0.5);
+    // All four texels lie in the part of the slot that the photograph covers.
+    at = clamp(at, vec2(1.0), max(source.size.zw - 1.0, 1.0));
     float slot = source.eye.w;
     return textureGather(photo_depth, vec3(at * (1.0 / slot_size.zw), slot));
 }

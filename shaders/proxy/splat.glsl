@@ -17,7 +17,7 @@ vec3 splat_camera_vector(vec3 d)
 
 // Subtracts the eye first, so that the difference is exact for points near the eye. corner: of the
 // point's block, and its step. splat_index.comp compares the depth with that of splat_depth.comp: `precise`
-// makes it the same in both programs.
+// makes it, and the pixel, the same in both programs.
 vec3 splat_camera_position(uvec2 code, vec4 corner)
 {
     precise vec3 from_eye = corner.xyz - eye.xyz + corner.w * point_steps(code);
@@ -30,7 +30,8 @@ vec3 splat_camera_position(uvec2 code, vec4 corner)
 // Projects a camera-space position into the picture; false outside it.
 bool splat_pixel(vec3 p, out vec2 pixel)
 {
-    pixel = focal.xy * p.xy / p.z + focal.zw;
+    precise vec2 at = focal.xy * p.xy / p.z + focal.zw;
+    pixel = at;
     // Compares as floats, since a distant value may exceed the range of int.
     return p.z > eye.w && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < float(view_size.x) &&
            pixel.y < float(view_size.y);

@@ -33,10 +33,10 @@ vec4 pixel_unpainted()
 }
 
 // A pixel painted on estimated background depth, which is still to be blurred. blur: log2 of
-// pixels, > 0.
+// pixels, > 0. A half float must tell it from an unpainted one.
 vec4 pixel_to_blur(vec3 color, float blur)
 {
-    return vec4(color, -1.0 - blur);
+    return vec4(color, -1.0 - max(blur, 1.0 / 512.0));
 }
 
 bool pixel_is_finished(vec4 pixel)

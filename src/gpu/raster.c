@@ -66,8 +66,8 @@ void orl_gpu_raster(struct orl_gpu *gpu, const struct orl_raster *r)
     }
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, gpu->framebuffer);
     glViewport(0, 0, any->params.width, any->params.height);
+    glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT); // after shader writes of earlier passes
     if (r->over) {
-        glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT); // after shader writes of earlier passes
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     } else {
