@@ -12,9 +12,9 @@
 #include "preprocess/cloud/silhouettes.h"
 
 // Share of the points that may lie outside, each counted as often as other photographs agree on it:
-// outliers, which few agree on, and what stands beside the subject. Masks that hide passers-by and
-// pictures taken at night exclude more.
-static const double OUTSIDE_MAX = 0.3;
+// outliers, which few agree on, and what stands beside the subject. Pictures taken at night exclude more. Masks that are
+// given count for more than points do: of a subject that shines, most points may be outliers.
+static const double OUTSIDE_DARK = 0.3, OUTSIDE_GIVEN = 0.7;
 
 // --- colours of new points ---
 
@@ -132,7 +132,7 @@ static enum orl_result close_with(struct orl_job *job, const struct orl_colmap_m
     if (result == ORL_OK)
         orl_logf(job->log, ORL_LOG_DEBUG, "fuse: %.1f %% of the points lie outside silhouettes",
                  100 * hull.outside_share);
-    if (result == ORL_OK && hull.outside_share <= OUTSIDE_MAX)
+    if (result == ORL_OK && hull.outside_share <= (found->given ? OUTSIDE_GIVEN : OUTSIDE_DARK))
         result = take_points(job, model, found, &hull, points, record);
     orl_hull_points_finish(&hull);
     return result;
