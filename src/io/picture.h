@@ -37,8 +37,8 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
 // camera's white balance and are 1 where the sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;
-// Reads 8-bit RGBA for masks. Alpha is 255 where the file has none, or its format is not PNG. Samples
-// of more bits are rounded up, so that nothing but 0 becomes 0.
+// Reads 8-bit RGBA for masks, whatever the colour profile. Alpha is 255 where the file has none, or its format is not
+// PNG. Samples of more bits are rounded up, so that nothing but 0 becomes 0.
 enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *path,
                                       struct orl_image *image) ORL_CHECK_RESULT;
 // True when the extension is that of a camera RAW format.

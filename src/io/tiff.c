@@ -209,14 +209,12 @@ static enum orl_result read_tiles(struct tiff_job *job, struct orl_image *image)
     return result;
 }
 
-// The colour profile of a file of integer RGB samples. Converters of RAW files often write a wider colour space than
-// sRGB.
+// The colour profile of a file of integer samples. Converters of RAW files often write a wider colour space than sRGB.
 static void read_profile(const struct tiff_job *job)
 {
     const void *icc = NULL;
     uint32_t size = 0;
-    bool rgb = job->photometric == PHOTOMETRIC_RGB && job->format == SAMPLEFORMAT_UINT;
-    if (rgb && TIFFGetField(job->tiff, TIFFTAG_ICCPROFILE, &size, &icc) && size)
+    if (job->format == SAMPLEFORMAT_UINT && TIFFGetField(job->tiff, TIFFTAG_ICCPROFILE, &size, &icc) && size)
         job->file->profile = orl_profile_create(job->file->log, job->file->path, icc, size);
 }
 

@@ -410,6 +410,30 @@ static void expect_greys(const char *path, double gamma)
     orl_image_finish(&eight);
 }
 
+// A TIFF of such greys.
+static void write_grey_tiff(const char *path, cmsUInt32Number size)
+{
+    const struct variety v = {16, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
+    uint16_t row[W];
+    for (int i = 0; i < W; i++)
+        row[i] = (uint16_t)(65535 * i / (W - 1));
+    TIFF *t = begin_tiff(path, &v, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(t, TIFFTAG_ICCPROFILE, size, icc);
+    for (uint32_t y = 0; y < H; y++)
+        assert_int_equal(TIFFWriteScanline(t, row, y, 0), 1);
+    TIFFClose(t);
+}
+
+// As a mask the picture has this pixel everywhere, whatever its profile.
+static void expect_stored(const char *path, const uint8_t pixel[3])
+{
+    struct orl_image rgba;
+    assert_int_equal(orl_picture_read_rgba(NULL, path, &rgba), ORL_OK);
+    for (size_t i = 0; i < orl_image_bytes(&rgba); i++)
+        assert_int_equal(rgba.u8[i], i % 4 == 3 ? 255 : pixel[i % 4]);
+    orl_image_finish(&rgba);
+}
+
 static void jpeg_and_png_profiles_are_applied(void **state)
 {
     (void)state;
@@ -425,6 +449,7 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     expect_light(in_dir("p.jpg"), want, true);
     write_png(in_dir("p.png"), pixel, 8, size, 0, false, NULL, NULL);
     expect_light(in_dir("p.png"), want, true);
+    expect_stored(in_dir("p.png"), pixel);
     write_png(in_dir("p.png"), pixel, 16, size, 0, false, NULL, NULL);
     expect_light(in_dir("p.png"), want, true);
     want_prophoto(stored, want);
@@ -443,6 +468,8 @@ static void jpeg_and_png_profiles_are_applied(void **state)
     cmsFreeToneCurve(curve);
     write_jpeg(in_dir("p.jpg"), NULL, 1, size, 0, NULL, 0);
     expect_greys(in_dir("p.jpg"), 1.8);
+    write_grey_tiff(in_dir("p.tif"), size);
+    expect_greys(in_dir("p.tif"), 1.8);
 }
 
 // In whichever way a PNG is read; that of sRGB changes nothing.
