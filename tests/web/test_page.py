@@ -490,6 +490,14 @@ class Page(unittest.TestCase):
             const {left, top, width, height} = document.querySelector('#compare img').getBoundingClientRect();
             return [left, top, width, height]""")
         self.assertEqual([round(x) for x in box], [0, 0, WIDTH, HEIGHT])
+        # Of a camera that was held upright: the file lies on its side, and fills an upright frame.
+        self.browser.js("oriel.photos[1].orientation = 6; oriel.navigator.goTo(oriel.photos[1]); oriel.wake()")
+        self.browser.wait(f"return document.querySelector('#compare img').src.includes('{self.manifest['photos'][1]['picture']['file']}')")
+        stored, upright = self.browser.js("""
+            const image = document.querySelector('#compare img'), {width, height} = image.getBoundingClientRect();
+            delete oriel.photos[1].orientation;
+            return [[image.offsetWidth, image.offsetHeight], [width, height].map(Math.round)];""")
+        self.assertEqual((stored, upright), ([HEIGHT, HEIGHT * HEIGHT // WIDTH], [HEIGHT * HEIGHT // WIDTH, HEIGHT]))
         self.press("c", "KeyC")
         self.assertTrue(self.browser.js("return document.getElementById('compare').hidden"))
 

@@ -621,7 +621,7 @@ class Firefox(unittest.TestCase):
         if not browser.js("return Boolean(oriel.picture)"):
             self.assertIn("WebGL 2", browser.js(text, "hint"))
             self.assertIn("Arch", browser.js(text, "note"))
-            self.assertGreater(browser.js("return document.querySelector('#album').naturalWidth"), 0)
+            self.assertGreater(browser.js("return document.querySelector('#album img').naturalWidth"), 0)
             return
         camera = json.loads(run(TOOL, "cameras", SCENE))[0]
         with tempfile.TemporaryDirectory() as work:

@@ -3,7 +3,7 @@
 import {Navigator} from "./navigation.js";
 import {nearestPhoto} from "./photos.js";
 import {text} from "./strings.js";
-import {button, byId, make, paragraphs, showHint, showProgress, Thumbs} from "./ui.js";
+import {button, byId, make, paragraphs, showHint, showProgress, showUpright, Thumbs} from "./ui.js";
 import {viewFromSaved} from "./view.js";
 
 const STEPS = {Comma: -1, PageUp: -1, ArrowLeft: -1, Period: 1, PageDown: 1, ArrowRight: 1};
@@ -14,10 +14,10 @@ export class Album {
     {
         Object.assign(this, {files, photos, why});
         this.home = new Navigator(manifest, photos, {calm: true, pivotAt: () => null}).home;
-        this.image = make("img", {id: "album", alt: ""});
+        this.image = make("img", {alt: ""});
         byId("stage").remove();
         byId("over").classList.add("album");
-        byId("head").after(this.image, byId("tools"), byId("thumbs"));
+        byId("head").after(make("div", {id: "album"}, this.image), byId("tools"), byId("thumbs"));
         this.thumbs = new Thumbs(photos, files, photo => this.show(photo));
         byId("thumbs").hidden = false;
         this.thumbs.open();
@@ -61,8 +61,8 @@ export class Album {
         this.thumbs.mark(photo);
         showHint(this.why);
         showProgress(1);
-        const address = await this.files.address(photo.picture.file);
+        await showUpright(this.image, photo, photo.picture, this.files);
         if (this.photo === photo)
-            Object.assign(this.image, {src: address, alt: said});
+            this.image.alt = said;
     }
 }

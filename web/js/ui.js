@@ -1,7 +1,7 @@
 // Everything around the picture: tools, panel, photographs, help, comparison.
 import {icons} from "./icons.js";
 import {text} from "./strings.js";
-import {frameHeight} from "./view.js";
+import {frameHeight, photoView, quartersOf} from "./view.js";
 
 export const byId = id => document.getElementById(id);
 
@@ -172,11 +172,11 @@ export class Thumbs {
         this.element = byId("thumbs");
         this.element.setAttribute("aria-label", text.photographs);
         this.buttons = photos.map(photo => {
-            const image = make("img", {alt: "", loading: "lazy", width: 64 * photo.width / photo.height,
-                                       height: 64});
+            const image = make("img", {alt: "", loading: "lazy"});
             const button = make("button", {type: "button", title: photo.name, onclick: () => goTo(photo),
                                            label: text.thumb(photo.number + 1, photo.name)}, image);
-            return {button, image, file: photo.thumb.file};
+            button.style.aspectRatio = photoView(photo).frame.aspect;
+            return {button, image, photo};
         });
         Object.assign(this, {files, current: null});
         this.element.append(...this.buttons.map(b => b.button));
@@ -186,7 +186,7 @@ export class Thumbs {
     {
         for (const b of this.buttons)
             if (!b.image.src)
-                b.image.src = await this.files.address(b.file);
+                await showUpright(b.image, b.photo, b.photo.thumb, this.files);
     }
 
     mark(photo)
@@ -211,6 +211,19 @@ export function fit(image, frame, aspect)
 {
     const height = frameHeight(frame, window.innerWidth, window.innerHeight);
     Object.assign(image.style, {height: `${height}px`, width: `${height * aspect}px`});
+}
+
+// A file of a photograph, whose pixels are as the camera stored them, fills the box around the image, upright.
+export async function showUpright(image, photo, {file}, files)
+{
+    image.awaits = file;
+    const src = await files.address(file);
+    if (image.awaits !== file)
+        return; // another one was asked for meanwhile
+    const quarters = quartersOf(photo), widened = quarters % 2 ? photo.width / photo.height : 1;
+    Object.assign(image, {src, onload: () => URL.revokeObjectURL(src)});
+    Object.assign(image.style, {width: `${100 * widened}%`, height: `${100 / widened}%`,
+                                transform: `translate(-50%, -50%) rotate(${90 * quarters}deg)`});
 }
 
 const srgbEncode = x => x > 0.0031308 ? 1.055 * x ** (1 / 2.4) - 0.055 : 12.92 * x;
@@ -245,7 +258,7 @@ export class Compare {
     }
 
     // photo: that the viewer is at; null: none
-    async update(photo, view)
+    update(photo, view)
     {
         const shows = this.on && photo !== null;
         this.element.hidden = !shows;
@@ -254,9 +267,9 @@ export class Compare {
         if (photo !== this.photo) {
             this.photo = photo;
             byId("right-side").textContent = photo.held_out ? text.sides.heldOut : text.sides.photograph;
-            this.image.src = await this.files.address(photo.picture.file);
+            showUpright(this.image, photo, photo.picture, this.files);
         }
-        fit(this.image, view.frame, view.frame.aspect);
+        fit(this.image.parentElement, view.frame, view.frame.aspect);
     }
 }
 

@@ -6,11 +6,12 @@ import {across, add, dot, length, mix, mix3, normalize, quatFromRotation, rotate
 
 // Quarters, clockwise, that turn a picture of each EXIF orientation upright (orl_photo_upright).
 const QUARTERS = [0, 0, 0, 2, 2, 1, 1, 3, 3];
+export const quartersOf = photo => QUARTERS[photo.orientation] || 0;
 
 export function photoView(photo)
 {
     let {r, width, height, fx, fy, cx, cy} = photo;
-    for (let i = QUARTERS[photo.orientation] || 0; i > 0; i--) {
+    for (let i = quartersOf(photo); i > 0; i--) {
         r = [-r[3], -r[4], -r[5], r[0], r[1], r[2], r[6], r[7], r[8]];
         [width, height, fx, fy, cx, cy] = [height, width, fy, fx, height - cy, cx];
     }
