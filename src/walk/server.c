@@ -21,7 +21,7 @@
 #include "walk/rendering.h"
 
 enum {
-    MESSAGE_MAX = 65536, // greatest size of a message, bytes
+    MESSAGE_MAX = 65536, // bytes of a message at most, of clients that may change nothing
     RECEIVE = 4096,      // bytes of a message that are received at once
     CLIENTS_MAX = 64,
     CHUNK = 16384,       // bytes of a file that are written at once
@@ -311,7 +311,8 @@ static int take_message(struct server *server, struct session *session, const ch
     struct lws *wsi = session->wsi;
     if (lws_frame_is_binary(wsi))
         return close_for(wsi, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE);
-    if (size > MESSAGE_MAX - session->message.size)
+    size_t most = server->content.edits ? WALK_SETTINGS_MAX : MESSAGE_MAX;
+    if (size > most - session->message.size)
         return close_for(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE);
     if (orl_bytes_add(server->log, &session->message, data, size) != ORL_OK)
         return -1;

@@ -7,8 +7,7 @@
 #include "core/json.h"
 #include "core/text.h"
 
-enum { TITLE_MAX = 500, TEXT_MAX = 4000, NOTES_MAX = 200, TOUR_VIEWS_MAX = 2000,
-       TOUR_SECONDS_MAX = 3601 };
+enum { TOUR_SECONDS_MAX = 3601 };
 static const char file_name[] = "walk.json";
 static const double pi = 3.14159265358979323846;
 
@@ -79,7 +78,7 @@ static bool is_note(const json_t *note)
 {
     double position[3];
     const json_t *view = json_object_get(note, "view"), *text = json_object_get(note, "text");
-    return is_text(json_object_get(note, "title"), TITLE_MAX) && (!text || is_text(text, TEXT_MAX)) &&
+    return is_text(json_object_get(note, "title"), WALK_TITLE_MAX) && (!text || is_text(text, WALK_TEXT_MAX)) &&
            orl_json_read_numbers(json_object_get(note, "position"), 3, position) &&
            (!view || is_view(view));
 }
@@ -91,7 +90,7 @@ static bool are_notes(const json_t *notes)
     json_array_foreach(notes, i, note)
         if (!is_note(note))
             return false;
-    return json_is_array(notes) && json_array_size(notes) <= NOTES_MAX;
+    return json_is_array(notes) && json_array_size(notes) <= WALK_NOTES_MAX;
 }
 
 // A path, as src/scene/path.c reads it, of views alone.
@@ -106,7 +105,7 @@ static bool is_tour(const json_t *tour)
                               !read_between(key, "seconds", 0, TOUR_SECONDS_MAX, &seconds)))
             return false;
     }
-    return json_array_size(keys) >= 2 && json_array_size(keys) <= TOUR_VIEWS_MAX;
+    return json_array_size(keys) >= 2 && json_array_size(keys) <= WALK_TOUR_VIEWS_MAX;
 }
 
 static bool is_length(const json_t *value)
@@ -116,7 +115,7 @@ static bool is_length(const json_t *value)
 
 static bool is_line(const json_t *value)
 {
-    return is_text(value, TITLE_MAX);
+    return is_text(value, WALK_TITLE_MAX);
 }
 
 enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,

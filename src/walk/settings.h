@@ -7,6 +7,17 @@
 
 #include "oriel/scene.h"
 
+// What settings hold at most, and their bytes as JSON: with a backslash before every character of a text.
+enum {
+    WALK_TITLE_MAX = 500,
+    WALK_TEXT_MAX = 4000,
+    WALK_NOTES_MAX = 200,
+    WALK_TOUR_VIEWS_MAX = 2000,
+    WALK_VIEW_BYTES = 600,
+    WALK_SETTINGS_MAX = 4 * WALK_TITLE_MAX + WALK_NOTES_MAX * (2 * (WALK_TITLE_MAX + WALK_TEXT_MAX) + WALK_VIEW_BYTES) +
+                        WALK_TOUR_VIEWS_MAX * WALK_VIEW_BYTES,
+};
+
 // Checks settings that came from `where`, a file or a client. ORL_ERR_FORMAT, logged: what is wrong.
 enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,
                                         const json_t *settings) ORL_CHECK_RESULT;

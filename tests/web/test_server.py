@@ -243,9 +243,11 @@ class Server(unittest.TestCase):
         self.works()
 
     def test_settings_are_saved_with_the_scene(self):
-        settings = {"title": "Arch", "notes": [{"title": "a", "position": [1, 2, 3]}] * 150}
+        view = {"cam_from_world": [[1, 0, 0, 0.1], [0, 1, 0, 0.2], [0, 0, 1, 0.3]], "fov_y_deg": 50}
+        settings = {"title": "Arch", "tour": {"keyframes": [view] * 2000},
+                    "notes": [{"title": "a", "position": [1, 2, 3], "text": "\n" * 4000}] * 200}
         client = Client(self.walk)
-        client.send({"save": settings}) # longer than what is received at once
+        client.send({"save": settings}) # as much as there may be
         self.assertEqual(json.loads(client.receive()[1])["saved"], True)
         client.send({"save": {"modes": []}})
         self.assertEqual(json.loads(client.receive()[1])["saved"], False)
@@ -279,7 +281,7 @@ class Server(unittest.TestCase):
     def test_oversized_messages_are_refused(self):
         client = Client(self.walk)
         try:
-            client.send(b" " * 200000)
+            client.send(b" " * 4000000)
         except OSError:
             pass # closed while it was sent
         self.assertIn(client.closed_for(), (0, 1009))
@@ -323,6 +325,10 @@ class Token(unittest.TestCase):
             self.assertEqual(client.closed_for(), 1007)
             client.close()
             self.assertFalse(os.path.exists(f"{SCENE}/walk.json"))
+            client = Client(walk, f"/live?token={token}")
+            client.send(b" " * 200000)
+            self.assertIn(client.closed_for(), (0, 1009))
+            client.close()
             self.assertFalse(opens(walk))
             self.assertTrue(opens(walk, f"/live?token={token}"))
         finally:

@@ -579,6 +579,23 @@ class Live(Visitors):
         with open(f"{SCENE}/walk.json", "w") as file:
             file.write(settings)
 
+    def test_the_first_connection_fails(self):
+        script = self.browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": """
+            let tries = 0;
+            window.WebSocket = class extends WebSocket {
+                constructor(address, protocol) { super(address, tries++ ? protocol : "none"); }
+            };"""})
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument", script)
+        self.errors = 1
+        self.open(address=self.walk().address[:-1])
+        self.assertEqual(self.hint(), "")
+
+    def test_too_much_to_save(self):
+        self.errors = 1
+        self.open(address=self.walk().address[:-1])
+        self.assertFalse(self.js("return oriel.picture.save({title: 'x'.repeat(5e6)})"))
+        self.assertIsNone(self.js("return oriel.picture.unsaved"))
+
     def test_server_hangs(self):
         walk = self.walk()
         self.open(address=walk.address[:-1])

@@ -1,6 +1,6 @@
 // The picture as a server draws it: one request for a frame at a time over a WebSocket.
 import {text} from "./strings.js";
-import {make} from "./ui.js";
+import {make, showHint} from "./ui.js";
 import {isBehind, project, unproject} from "./view.js";
 
 const HEADER_WORDS = 6;
@@ -9,6 +9,7 @@ const QUALITY_MOVING = 75, QUALITY_STILL = 90;
 const PIXELS_MAX = 2.0e6; // the server refuses more than 4 million
 const RETRY_MS = 1500;
 const SILENT_MS = 8000; // a server that has not answered for so long is said to hang
+const TOO_LARGE = 1009; // why a server closes: a message is longer than it takes
 const LOADING_MAX = 48; // photographs of a frame
 const MAP_POINT_BYTES = 16;
 
@@ -56,7 +57,7 @@ export class LivePicture {
     {
         const address = files.url("live");
         address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
-        return new Promise((resolve, reject) => {
+        return new Promise(resolve => {
             this.socket = new WebSocket(address, "oriel-walk");
             this.socket.binaryType = "arraybuffer";
             this.socket.onopen = () => {
@@ -65,10 +66,11 @@ export class LivePicture {
             };
             this.socket.onmessage = event => typeof event.data === "string"
                 ? this.hear(JSON.parse(event.data)) : this.receive(event.data);
-            this.socket.onclose = () => {
-                reject(new Error(text.noServer));
+            this.socket.onclose = ({code}) => {
+                if (code === TOO_LARGE && this.unsaved)
+                    this.hearOfSettings(false);
                 this.closed();
-                setTimeout(() => this.connect(files).catch(() => {}), RETRY_MS);
+                setTimeout(() => this.connect(files).then(resolve), RETRY_MS);
             };
         });
     }
@@ -93,6 +95,7 @@ export class LivePicture {
         this.lost = true;
         this.asked = null;
         this.problem = text.noServer;
+        showHint(this.problem); // before the walk begins, nothing else says so
         clearTimeout(this.silence);
         if (this.renders)
             this.hear({rendering: {done: 0, total: 0, problem: text.noServer}});
