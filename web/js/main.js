@@ -17,7 +17,7 @@ import {Ruler} from "./ruler.js";
 import {PathEditor} from "./path.js";
 import {makePhotos} from "./photos.js";
 import {language, text} from "./strings.js";
-import {buildHelp, byId, Compare, fit, make, Panel, save, showHint, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
+import {buildHelp, byId, Compare, fit, make, Panel, save, showHint, showPassing, showProblem, showProgress, Thumbs, Tools} from "./ui.js";
 import {cameraOf, levelAxes, photoView, viewFromText, viewToText} from "./view.js";
 
 const SCALES = [1, 0.75, 0.5, 0.35, 0.25]; // of the resolution, while moving
@@ -87,7 +87,7 @@ class Walk {
             return;
         const headset = new Headset(this.own, this.manifest, this.navigator.up, stood => this.leftHeadset(stood));
         const run = () => headset.on ? headset.leave() : headset.enter(this.navigator.view, this.layer, this.sharpMs)
-            .catch(error => showHint(text.failed(error.message)));
+            .catch(error => showPassing(text.failed(error.message)));
         this.headset = headset;
         this.tools.add("headset", {key: "v", run, pressed: () => headset.on});
         this.tools.fit();
@@ -222,7 +222,7 @@ class Walk {
             focal: () => this.windowCamera(1).fx, wake: () => this.wake(),
             actions: new Map([["escape", () => this.closeTop()],
                               ...Object.values(actions).flatMap(a => [a.key, a.also].map(key => [key, a.run]))]),
-            holdsWheel: () => this.holdsWheel(), onWheelLeft: () => showHint(text.clickFirst),
+            holdsWheel: () => this.holdsWheel(), onWheelLeft: () => showPassing(text.clickFirst),
             onTap: (x, y) => (this.ruler.on ? this.ruler : this.notes).tap(x, y), onTwice: (x, y) => this.goThere(x, y),
         });
         document.addEventListener("fullscreenchange", () => this.wake());
@@ -282,7 +282,7 @@ class Walk {
         if (point)
             this.navigator.approach(point);
         else
-            showHint(text.nothingThere);
+            showPassing(text.nothingThere);
     }
 
     makePath(edits)
@@ -383,7 +383,7 @@ class Walk {
     async measure()
     {
         this.panel.bench.disabled = true;
-        showHint(text.measuring);
+        showPassing(text.measuring);
         save(`${this.manifest.title}.benchmark.json`, await benchmark(this));
         this.panel.bench.disabled = false;
     }

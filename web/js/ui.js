@@ -299,11 +299,26 @@ export function buildHelp(has)
     };
 }
 
+const PASSING_MS = 4000;
+let lasting = "", passingEnds = 0; // its timer; 0: the lasting hint shows
+
 export function showHint(message)
 {
     const hint = byId("hint");
-    if (hint.textContent !== message)
+    lasting = message;
+    if (!passingEnds && hint.textContent !== message)
         hint.textContent = message;
+}
+
+// For some seconds, in place of the lasting hint.
+export function showPassing(message)
+{
+    byId("hint").textContent = message;
+    clearTimeout(passingEnds);
+    passingEnds = setTimeout(() => {
+        passingEnds = 0;
+        showHint(lasting);
+    }, PASSING_MS);
 }
 
 const PROBLEM_MS = 12000;
