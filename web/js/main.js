@@ -474,24 +474,35 @@ class Walk {
         if (!this.running) {
             this.running = true;
             this.lastTime = 0;
-            requestAnimationFrame(time => this.tick(time));
+            requestAnimationFrame(time => this.run(time));
         }
     }
 
+    // Frame by frame until nothing changes any more, or something fails.
+    run(time)
+    {
+        let more = false;
+        try {
+            more = this.tick(time);
+        } finally {
+            this.running = more;
+        }
+        if (more)
+            requestAnimationFrame(next => this.run(next));
+    }
+
+    // A frame, if one is due. Returns whether another one follows.
     tick(time)
     {
-        if (this.headset?.on) {
-            this.running = false;
-            return;
-        }
+        if (this.headset?.on)
+            return false;
         const passed = this.lastTime ? time - this.lastTime : 16;
         this.lastTime = time;
         const {keys, turn, fast} = this.input.state(), nav = this.navigator;
         const moves = nav.update(Math.min(passed, 100) / 1000, keys, turn, fast);
         if (this.picture.awaits && !this.shouldShowPicture()) {
             this.showState();
-            this.running = false;
-            return;
+            return false;
         }
         const plays = this.timeSteps?.playing;
         if (plays)
@@ -512,10 +523,9 @@ class Walk {
         this.dirty = false;
         if (rests && this.refined) {
             this.writeAddress();
-            this.running = false;
-            return;
+            return false;
         }
-        requestAnimationFrame(next => this.tick(next));
+        return true;
     }
 
     // Of frames that a device can keep up with, told by the coarsest.
