@@ -243,6 +243,8 @@ class Page(Visitors):
         self.assertEqual(self.js("return [oriel.navigator.at.number, oriel.navigator.mode]"), [1, "fly"])
         self.assertEqual(self.js("return getComputedStyle(document.getElementById('tools')).display"), "none")
         self.assertIn("?start=2&mode=fly&ui=none", self.browser.address())
+        self.browser.keys("KeyM", "m") # nothing would be seen of what it opens
+        self.assertTrue(self.hidden("map"))
 
     def test_strict_policy(self):
         server = Server(SITE, {"Content-Security-Policy": "default-src 'self'"})

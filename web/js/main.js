@@ -26,6 +26,7 @@ const LIVE_LONG = 75, LIVE_SHORT = 40;    // the same of frames that come over t
 const REFINE_AFTER = 140;                 // milliseconds of rest
 const RIGHT = ["path", "maker", "method", "ruler"]; // panels that share a place
 const SHEETS = ["panel", ...RIGHT, "map", "note"]; // of which a narrow window shows one
+const OVER = ["thumbs", "record", ...SHEETS]; // actions that open what ui=none hides
 const NARROW = matchMedia("(max-width: 1099px)"); // as style.css has it
 const POSTER_SHARE = 0.625;               // height to width: POSTER_* of site_photos.c
 
@@ -56,6 +57,8 @@ class Walk {
         this.asked = Object.fromEntries(new URLSearchParams(location.search)); // by whoever made the link
     }
 
+    get bare() { return this.asked.ui === "none"; }
+
     // The picture can be drawn from now on.
     begin(picture)
     {
@@ -70,7 +73,7 @@ class Walk {
         this.readAddress();
         this.resized();
         this.scale = picture.remote ? 0 : SCALES.length - 1; // until a frame has told
-        byId("over").classList.toggle("bare", this.asked.ui === "none");
+        byId("over").classList.toggle("bare", this.bare);
         window.addEventListener("hashchange", () => this.readAddress());
         window.addEventListener("resize", () => this.resized());
         this.watchPixels();
@@ -194,6 +197,8 @@ class Walk {
             full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
             help: {key: "?", run: () => help.show()},
         };
+        for (const id of this.bare ? OVER : [])
+            delete actions[id];
         const help = buildHelp(key => Object.values(actions).some(action => action.key === key));
         this.tools = new Tools(actions, () => this.wake());
         this.compare = new Compare(this.files, this.manifest.radiance);

@@ -82,11 +82,11 @@ export class Map2d {
 
     draw()
     {
-        if (this.canvas.hidden)
-            return;
+        const size = Math.round(this.canvas.clientWidth * window.devicePixelRatio);
+        if (!size)
+            return; // hidden
         if (!this.points)
             this.frame();
-        const size = Math.round(this.canvas.clientWidth * window.devicePixelRatio);
         if (this.canvas.width !== size || !this.background) {
             this.canvas.width = this.canvas.height = size;
             this.drawBackground(size);
