@@ -563,6 +563,7 @@ class Page(unittest.TestCase):
         self.browser.driver.get(museum.address)
         self.browser.driver.switch_to.frame(0)
         self.browser.settle()
+        self.assertIsNone(self.browser.js("return document.getElementById('tool-full')")) # which it is not allowed
         self.browser.js("document.getElementById('tool-help').click()")
         self.assertEqual(self.browser.js("return document.activeElement.tagName"), "H2")
         self.browser.driver.switch_to.default_content()

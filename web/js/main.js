@@ -194,7 +194,8 @@ class Walk {
                     toggle("method")();
             }}} : {}),
             screenshot: {key: "x", run: () => this.saveScreenshot()},
-            full: {key: "f", run: () => this.toggleFull(), pressed: () => document.fullscreenElement !== null},
+            ...(document.fullscreenEnabled ? {full: {key: "f", run: () => this.toggleFull(),
+                                                     pressed: () => Boolean(document.fullscreenElement)}} : {}),
             help: {key: "?", run: () => help.show()},
         };
         for (const id of this.bare ? OVER : [])
@@ -409,10 +410,8 @@ class Walk {
 
     toggleFull()
     {
-        if (document.fullscreenElement)
-            document.exitFullscreen();
-        else
-            document.documentElement.requestFullscreen();
+        (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen())
+            .catch(error => showPassing(text.failed(error.message)));
     }
 
     async saveScreenshot()
