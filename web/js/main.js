@@ -430,12 +430,11 @@ class Walk {
         const photo = this.photoOf(parts.get("p")) || (parts.has("v") ? null : this.photoOf(this.asked.start));
         const view = parts.has("v") ? viewFromText(parts.get("v"), nav.home) : null;
         const mode = parts.get("mode") || this.asked.mode;
-        if (nav.modes.includes(mode))
-            nav.setMode(mode);
         if (photo)
             nav.setView(photoView(photo), photo);
         else if (view)
             nav.setView(view);
+        nav.setMode(nav.modes.includes(mode) ? mode : nav.mode);
     }
 
     // By number from 1, or by name.

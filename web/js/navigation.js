@@ -39,7 +39,7 @@ export class Navigator {
         this.mode = this.homeMode = this.modes[0];
         this.speed = [0, 0, 0]; // right, up, forward
         this.flight = null;
-        this.pivot = null;
+        this.pivot = null; // of mode "orbit"; null: not chosen yet
         const apart = photos.map(p => Math.min(...photos.filter(q => q !== p).map(q => distance(p.eye, q.eye))));
         this.room = Math.max(ROOM * this.distance, 2 * median(apart.filter(Number.isFinite)));
         this.setView(this.home, this.homePhoto);
@@ -58,8 +58,14 @@ export class Navigator {
     {
         this.wake();
         this.mode = mode;
-        this.pivot = mode === "orbit" ? this.pivotAt() ||
-            add(this.view.eye, scale(forwardOf(this.view), this.distance)) : null;
+        this.pivot = null;
+    }
+
+    // What the view turns around, chosen when it is first needed: by then the picture shows the view.
+    choosePivot()
+    {
+        this.pivot ||= this.pivotAt() || add(this.view.eye, scale(forwardOf(this.view), this.distance));
+        return this.pivot;
     }
 
     get flying() { return this.flight !== null; }
@@ -77,9 +83,9 @@ export class Navigator {
         // New rows are the old ones turned in the world: r' = r * turn^-1.
         const yawed = multiply(view.r, rotation(up, yaw));
         const r = multiply(rotation([1, 0, 0], -pitch), yawed);
-        if (this.mode === "orbit" && this.pivot) {
-            const offset = rotate(view.r, sub(view.eye, this.pivot));
-            this.setView({...view, r, eye: add(this.pivot, rotateBack(r, offset))});
+        if (this.mode === "orbit") {
+            const pivot = this.choosePivot(), offset = rotate(view.r, sub(view.eye, pivot));
+            this.setView({...view, r, eye: add(pivot, rotateBack(r, offset))});
         } else {
             this.setView({...view, r});
         }
@@ -124,12 +130,12 @@ export class Navigator {
         if (this.mode === "walk")
             way = this.held(way);
         let eye = add(view.eye, way);
-        if (this.mode === "orbit" && this.pivot && by[2] !== 0 && by[0] === 0 && by[1] === 0) {
-            const from = sub(view.eye, this.pivot); // never through the pivot
+        if (this.mode === "orbit" && by[2] !== 0 && by[0] === 0 && by[1] === 0) {
+            const from = sub(view.eye, this.choosePivot()); // never through the pivot
             const factor = Math.exp(-by[2] / Math.max(length(from), 1e-9));
             eye = add(this.pivot, scale(from, clamp(factor, 0.2, 5)));
-        } else if (this.mode === "orbit" && this.pivot) {
-            this.pivot = add(this.pivot, way);
+        } else if (this.mode === "orbit") {
+            this.pivot = add(this.choosePivot(), way);
         }
         this.setView({...view, eye});
     }
