@@ -16,11 +16,12 @@ const SOFT_LAST = 1e3; // urgency of soft splats: behind photographs and points
 const MIDDLE_MAX = 5; // of the scene's distance: a guess may lie a thousand times as far
 const handheld = matchMedia("(pointer: coarse)").matches;
 
-// Bytes for photographs on the graphics chip: what phones stand, more where there is more.
+// Bytes for photographs on the graphics chip. Phones grant a page little of their memory, and neither Safari nor
+// Firefox tells how much there is.
 function photoBudget()
 {
-    const gigabytes = navigator.deviceMemory || (handheld ? 2 : 8);
-    return (gigabytes >= 8 ? 768 : gigabytes >= 4 ? 384 : 160) * 2 ** 20;
+    const gigabytes = navigator.deviceMemory || (handheld ? 2 : 4);
+    return Math.min(gigabytes >= 8 ? 768 : gigabytes >= 4 ? 384 : 160, handheld ? 256 : 768) * 2 ** 20;
 }
 
 // Without thumbnails. Photographs of time steps are counted with these.
