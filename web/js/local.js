@@ -65,7 +65,8 @@ export class LocalPicture {
         this.eye = photos[manifest.start].eye;
         canvas.addEventListener("webglcontextlost", event => {
             event.preventDefault();
-            throw new Error(text.lostDevice);
+            this.problem = text.lostDevice;
+            onChange();
         });
         canvas.addEventListener("webglcontextrestored", () => location.reload());
         for (const photo of this.moving ? [] : photos)
@@ -167,6 +168,8 @@ export class LocalPicture {
     draw(full, camera, layer)
     {
         const {width, height} = camera;
+        if (this.problem)
+            return;
         if (this.canvas.width !== width || this.canvas.height !== height)
             Object.assign(this.canvas, {width, height});
         this.rankFor(full, camera === full);
