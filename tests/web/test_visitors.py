@@ -308,6 +308,17 @@ class Page(Visitors):
         self.js("oriel.manifest.walk.unit_m = oriel.headset.units = 0.5; document.getElementById('tool-headset').click()")
         self.browser.wait("return window.headset.frame !== undefined")
         self.assertTrue(self.js("return oriel.headset.on"))
+        self.js("headset.end()")
+        self.js("""
+            headset.requestReferenceSpace = async () => {
+                delete headset.requestReferenceSpace;
+                throw new Error("no space");
+            };
+            document.getElementById("tool-headset").click();""")
+        self.browser.wait("return document.getElementById('hint').textContent.includes('no space')")
+        self.assertFalse(self.js("return oriel.headset.on")) # the walk goes on
+        self.js("delete headset.frame; document.getElementById('tool-headset').click()")
+        self.browser.wait("return window.headset.frame !== undefined")
         start = self.eye()
         eyes = self.js(WEAR, 0)
         self.assertEqual(self.js("return oriel.navigator.view.eye"), start)
@@ -329,7 +340,7 @@ class Page(Visitors):
             self.assertAlmostEqual(camera["eye"][i] - before["eye"][i], 0.5 * 0.15 * before["r"][6 + i], places=5)
         ((turned, _), (other, _)) = self.js(WEAR, 600, {"right": [0, 0, 1, 0]})
         self.assertAlmostEqual(sum(a * b for a, b in zip(turned["r"][6:], camera["r"][:3])), math.sin(math.pi / 6), places=5)
-        self.js("headset.dispatchEvent(new Event('end'))")
+        self.js("headset.end()")
         self.assertFalse(self.js("return oriel.headset.on"))
         self.browser.settle()
         for own, left, right in zip(self.eye(), turned["eye"], other["eye"]):
@@ -683,6 +694,7 @@ class Headset extends EventTarget {
     updateRenderState({baseLayer}) { this.layer = baseLayer; }
     async requestReferenceSpace() { return "space"; }
     requestAnimationFrame(frame) { this.frame = frame; }
+    async end() { this.dispatchEvent(new Event("end")); }
 }
 window.headset = new Headset();
 Object.defineProperty(navigator, "xr", {value: {isSessionSupported: async () => true,

@@ -48,6 +48,16 @@ export class Headset {
             this.session = null;
             this.onEnd(this.stood);
         });
+        try {
+            await this.begin(gl, session, sharpMs);
+        } catch (error) {
+            await session.end(); // the walk goes on without
+            throw error;
+        }
+    }
+
+    async begin(gl, session, sharpMs)
+    {
         await gl.makeXRCompatible();
         this.target = new XRWebGLLayer(session, gl, {
             alpha: false, antialias: false, depth: false,
