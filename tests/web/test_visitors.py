@@ -115,6 +115,9 @@ class Page(Visitors):
                                ("KeyV", "k", "path")): # of Dvorak, by its letter
             self.browser.keys(code, key)
             self.assertFalse(self.hidden(id_), id_)
+        for code, key, mode in (("Digit2", "é", "fly"), ("Digit1", "+", "walk")): # French, Czech
+            self.browser.keys(code, key)
+            self.assertEqual(self.js("return oriel.navigator.mode"), mode)
         at = "return oriel.navigator.at && oriel.navigator.at.number"
         self.browser.keys("KeyH", "h")
         start = self.js(at)

@@ -43,6 +43,8 @@ export class Input {
         canvas.addEventListener("pointerup", event => this.pointerUp(event));
         canvas.addEventListener("pointercancel", event => this.pointers.delete(event.pointerId));
         canvas.addEventListener("wheel", event => this.wheel(event), {passive: false});
+        for (const kind of ["gesturestart", "gesturechange"]) // of Safari on a Mac, which has no wheel for it
+            canvas.addEventListener(kind, event => this.pinch(event));
         canvas.addEventListener("contextmenu", event => event.preventDefault());
         window.addEventListener("gamepadconnected", () => this.watchPads());
     }
@@ -102,7 +104,8 @@ export class Input {
             this.wake();
             return;
         }
-        const action = this.actions.get(keyOf(event));
+        // French and Czech keyboards have digits with shift alone.
+        const action = this.actions.get(keyOf(event)) || this.actions.get(event.code.replace("Digit", ""));
         if (action && !event.repeat) {
             event.preventDefault();
             action();
@@ -184,6 +187,15 @@ export class Input {
     {
         const s = FINGER_STEP, walks = this.navigator.mode === "walk";
         this.navigator.step(-dx * s, walks ? 0 : dy * s, pinch * s + (walks ? dy * s : 0));
+    }
+
+    // Of a trackpad. Fingers on a screen are pointers too.
+    pinch(event)
+    {
+        event.preventDefault();
+        if (event.type === "gesturechange" && !this.dragging)
+            this.navigator.zoom(event.scale / this.pinched);
+        this.pinched = event.scale;
     }
 
     wheel(event)
