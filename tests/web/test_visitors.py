@@ -169,6 +169,60 @@ class Page(Visitors):
         self.assertLess(far(self.eye()), 0.9 * far(before["eye"]))
         self.assertLess(self.js("return oriel.navigator.outness"), 1)
 
+    def test_pinch_on_a_mac(self):
+        """Safari's own events, as Chromium lacks them."""
+        self.open()
+        fy = self.js("return oriel.navigator.view.frame.fy")
+        prevented = self.js("""
+            return [["gesturestart", 1], ["gesturechange", 1.2], ["gesturechange", 1.5]].map(([kind, scale]) =>
+                !oriel.canvas.dispatchEvent(Object.assign(new Event(kind, {cancelable: true}), {scale})));""")
+        self.assertEqual(prevented, [True] * 3)
+        self.assertAlmostEqual(self.js("return oriel.navigator.view.frame.fy"), 1.5 * fy)
+
+    def test_hints_stay(self):
+        self.open()
+        said = self.js("""
+            oriel.pick = async () => null;
+            await oriel.goThere(1, 1);
+            oriel.showState();
+            return document.getElementById("hint").textContent;""")
+        self.assertIn("Nothing is known", said)
+        self.browser.wait("return document.getElementById('hint').textContent === ''")
+
+    def test_a_frame_that_fails(self):
+        self.open()
+        self.errors = 1
+        self.js("""
+            oriel.navigator.update = () => {
+                delete oriel.navigator.update;
+                throw new Error("once");
+            };
+            oriel.wake();""")
+        self.browser.wait("return document.getElementById('problem').textContent !== ''")
+        self.assertTrue(self.moves("KeyW", "w"))
+
+    def test_lost_chip(self):
+        self.open()
+        self.errors = 1
+        self.js("window.chip = oriel.picture.device.gl.getExtension('WEBGL_lose_context'); chip.loseContext()")
+        self.browser.wait("return document.getElementById('hint').textContent.includes('taken away')")
+        self.assertTrue(self.moves("KeyW", "w"))
+        self.assertIn("taken away", self.hint())
+        self.js("chip.restoreContext()")
+        self.browser.wait("return !window.chip") # loaded again
+        self.browser.settle()
+        self.assertEqual(self.hint(), "")
+
+    def test_photographs_too_large_for_the_chip(self):
+        script = self.browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": """
+            const {getParameter, MAX_TEXTURE_SIZE} = WebGL2RenderingContext.prototype;
+            WebGL2RenderingContext.prototype.getParameter = function (key) {
+                return key === MAX_TEXTURE_SIZE ? 100 : getParameter.call(this, key);
+            };"""})
+        self.addCleanup(self.browser.driver.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument", script)
+        self.browser.open(self.server.address)
+        self.assertIn("large", self.hint())
+
     def test_languages(self):
         for lang, words, close in (("de", "Fotos", "Schließen"), ("cs", "Fotografie", "Zavřít"), ("xx", "Photographs", "Close")):
             self.open(f"?lang={lang}")
@@ -253,7 +307,7 @@ class Page(Visitors):
         server = Server(SITE, {"Content-Security-Policy": "default-src 'self'"})
         self.addCleanup(server.close)
         self.open(address=server.address)
-        self.assertEqual(self.js("return getComputedStyle(document.getElementById('unstarted')).display"), "none")
+        self.assertEqual(self.js("return document.getElementById('unstarted').getAnimations().length"), 0)
 
     def test_pages_that_cannot_start_say_so(self):
         self.open()

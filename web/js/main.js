@@ -613,9 +613,8 @@ class Walk {
 
 async function start()
 {
-    const started = new CSSStyleSheet(); // which is no part of a saved copy: one that does not start says so
-    started.replaceSync("#unstarted { display: none; }");
-    document.adoptedStyleSheets = [started];
+    // The animation is no part of a saved copy: one that does not start says so.
+    byId("unstarted").getAnimations().forEach(appearing => appearing.cancel());
     // Of a copy that was saved while it ran.
     for (const made of document.querySelectorAll("#over > :is([role], nav, section), #right > section, #marks, #help, #problem"))
         made.replaceChildren();
@@ -625,7 +624,7 @@ async function start()
     for (const kind of ["focus", "blur"])
         window.addEventListener(kind, hold);
     hold();
-    const fail = error => showProblem(text.failed(error.message));
+    const fail = error => showProblem(text.failed(error?.message || error));
     window.addEventListener("error", event => fail(event.error || event));
     window.addEventListener("unhandledrejection", event => fail(event.reason));
     showProgress(0.02);

@@ -1,5 +1,7 @@
 // Photographs: which of them a view can use best, and those that are on the graphics chip.
 import {clamp, distance, dot, rotate, row, sub} from "./math.js";
+import {NoDevice} from "./gl.js";
+import {text} from "./strings.js";
 import {forwardOf, poseOf, project, unproject} from "./view.js";
 
 export function makePhotos(manifest)
@@ -95,6 +97,8 @@ export class PhotoStore {
         Object.assign(this, {device, programs, photos, perFrame, radiance});
         this.width = largest(p => p.width);
         this.height = largest(p => p.height);
+        if (Math.max(this.width, this.height) > gl.getParameter(gl.MAX_TEXTURE_SIZE))
+            throw new NoDevice(text.largePhotos);
         this.levels = 1 + Math.floor(Math.log2(Math.max(this.width, this.height)));
         const depthWidth = largest(p => p.depth.width), depthHeight = largest(p => p.depth.height);
         this.format = radiance ? "RGBA16F" : "RGBA8";

@@ -10,6 +10,7 @@ const english = {
     loadingShare: share => `Loading ${Math.round(100 * share)} %`,
     noWebgl: "This browser offers no WebGL 2, which the walk is drawn with.",
     noFloats: "This graphics chip cannot draw into floating-point pictures, which the walk needs.",
+    largePhotos: "This graphics chip takes no photographs as large as these.",
     album: why => `${why} These are the photographs that it is made of.`,
     lostDevice: "The graphics chip was taken away. The page starts again as soon as it is back.",
     noServer: "The server does not answer. The page tries again.",
