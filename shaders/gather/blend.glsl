@@ -98,7 +98,9 @@ vec4 blend(surface_point s, ranking r, out float varies, out float luma, out flo
         kept = k == 0 ? share : kept;
     }
     apart.y = max(apart.y, 1e-30);
-    blur = guess_blur(s.p, r.of[0].penalty, sqrt(apart.x / apart.y), first / apart.y);
+    // A photograph fades at its border, which says nothing of where what it shows may lie.
+    float fade = photo_border(photo_at(r.of[0].index), r.of[0].pixel);
+    blur = guess_blur(s.p, r.of[0].penalty * fade, sqrt(apart.x / apart.y), first / apart.y);
     vec4 color = sum + kept * detail * (sum - kept * first * shown[0]);
     color /= max(total, 1e-30);
     luma = color.a;

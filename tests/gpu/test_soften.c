@@ -131,6 +131,26 @@ static void a_photograph_from_here_stays_sharp(void **state)
     orl_frame_finish(&soft);
 }
 
+// So it is to its very border, where the photograph fades.
+static void a_photograph_from_here_stays_sharp_at_its_border(void **state)
+{
+    (void)state;
+    struct orl_frame frames[2];
+    struct orl_render_params params = orl_method_find(NULL, "oriel")->params;
+    params.antialias = ORL_ANTIALIAS_OFF;
+    for (int i = 0; i < 2; i++) {
+        struct fixture f;
+        setup(&f, false);
+        add_striped(&f, look_from(0, 0, 0, SIDE, FOCAL), WALL_END, 2, 255);
+        params.guess_blur = i ? 0.3f : 0;
+        frames[i] = draw(gpu, &f, look_from(0, 0, 0, SIDE, FOCAL), &params, 0);
+        teardown(&f);
+    }
+    assert_memory_equal(frames[1].color.f32, frames[0].color.f32, sizeof(float) * 3 * SIDE * SIDE);
+    orl_frame_finish(&frames[0]);
+    orl_frame_finish(&frames[1]);
+}
+
 // Where photographs agree, depth was guessed well; where they do not, it was not.
 static void agreement_keeps_sharp(void **state)
 {
@@ -163,6 +183,7 @@ int main(void)
         cmocka_unit_test(radiance_blurs_alike),
         cmocka_unit_test(surfaces_stay_sharp_and_do_not_run),
         cmocka_unit_test(a_photograph_from_here_stays_sharp),
+        cmocka_unit_test(a_photograph_from_here_stays_sharp_at_its_border),
         cmocka_unit_test(agreement_keeps_sharp),
     };
     int failed = cmocka_run_group_tests_name("soften", tests, NULL, NULL);
