@@ -178,10 +178,8 @@ def draw(rows, title, path):
              ("SSIM", lambda row: row["mean"]["ssim"]), ("FLIP", lambda row: row["mean"]["flip"]),
              ("flicker", lambda row: row["flicker"])]
     for axis, (label, value) in zip(axes.flat, shown):
-        axis.set(xscale="log", xlabel="milliseconds a frame", ylabel=label)
-        axis.xaxis.set_major_locator(plot.LogLocator(subs=(1, 2, 5)))
-        axis.xaxis.set_major_formatter("{x:g}")
-        axis.xaxis.set_minor_locator(plot.NullLocator())
+        report.log_x(axis, "milliseconds a frame")
+        axis.set(ylabel=label, xmargin=0.12)  # room for names
         named = []
         for n, method in enumerate(dict.fromkeys(row["method"] for row in timed)):
             dots = [row for row in timed if row["method"] == method and value(row) is not None]

@@ -19,7 +19,7 @@ def bars(title, label, rows, path):
     axis.set_yticks(range(len(rows)), [name for name, _ in rows])
     axis.invert_yaxis()
     axis.set(title=title, xlabel=label)
-    axis.legend(fontsize=7)
+    axis.legend(fontsize=7, loc="upper left", bbox_to_anchor=(1, 1))
     report.save(figure, path)
 
 
@@ -27,7 +27,8 @@ def curve(title, x_label, y_label, dots, path):
     """Dots (x, y) in the order of x, which is logarithmic."""
     figure, axis = report.pyplot().subplots(figsize=(9, 5))
     axis.plot(*zip(*sorted(dots)), "o-")
-    axis.set(title=title, xlabel=x_label, ylabel=y_label, xscale="log")
+    axis.set(title=title, ylabel=y_label)
+    report.log_x(axis, x_label)
     report.save(figure, path)
 
 

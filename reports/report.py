@@ -167,6 +167,14 @@ def pyplot():
     return matplotlib.pyplot
 
 
+def log_x(axis, label):
+    """Makes the x axis logarithmic, with plain numbers."""
+    axis.set(xscale="log", xlabel=label)
+    axis.xaxis.set_major_locator(pyplot().LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter("{x:g}")
+    axis.xaxis.set_minor_locator(pyplot().NullLocator())
+
+
 def save(figure, path):
     figure.savefig(path, metadata={"Date": None}, bbox_inches="tight")
     pyplot().close(figure)
