@@ -35,6 +35,9 @@ static enum orl_result fill(struct import_job *job)
     ORL_TRY(orl_import_write_mesh(job, &triangles));
     ORL_TRY(orl_import_write_model(job, "sparse", false, &known));
     ORL_TRY(job->params->points == ORL_IMPORT_DENSIFY ? orl_import_densify(job) : orl_import_write_points(job, &points));
+    if (job->params->points == ORL_IMPORT_NO_POINTS && !triangles && !job->mask_count)
+        orl_logf(job->log, ORL_LOG_WARNING, "the scene has neither points nor a mesh nor silhouettes, and nothing can be "
+                 "drawn of it: --points densify makes points, --points FILE takes a cloud");
     ORL_TRY(orl_import_write_manifest(job, points, triangles));
     return orl_new_dir_finish(job->log, &job->new_dir);
 }

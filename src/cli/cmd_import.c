@@ -24,7 +24,7 @@
     ROW(max_size, "max-size", INT(0, 64, 16384, "PX"), \
         "larger side of photographs in the scene (any)") \
     ROW(points, "points", TEXT("none|densify|FILE"), \
-        "a cloud as PLY, or made as prepare does (what the file of cameras names)") \
+        "a cloud as PLY, or made as prepare does (what the file of cameras names, or fused.ply)") \
     ROW(quality, "quality", CHOICE(orl_quality, ORL_QUALITIES, ORL_QUALITY_STANDARD, "NAME"), \
         "of densify") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory that densify keeps to") \

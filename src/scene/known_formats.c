@@ -37,6 +37,9 @@ static enum orl_result read_colmap(const struct orl_log *log, const char *path, 
     const char *dir = ORL_PATH("", "%.*s", (int)(orl_path_name(path) - path), path);
     ORL_TRY(orl_colmap_read(log, *dir ? dir : ".", &known->model));
     ORL_TRY(mend_names(log, path, &known->model));
+    const char *fused = ORL_PATH(known->folder, "fused.ply"); // where a workspace has its cloud
+    if (orl_path_is_file(fused))
+        orl_path_print(known->points_file, "", "%s", fused);
     known->gaps = orl_array(log, known->model.camera_count, sizeof *known->gaps);
     ORL_TRY_MEMORY(known->gaps);
     orl_known_say_read(log, path, "COLMAP model", known);

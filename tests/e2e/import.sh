@@ -67,6 +67,12 @@ runs 2 "$oriel" import cut.json --images set/images --out other
 grep -q 'cut.json: line ' stderr.txt || fail "does not name the line"
 [ ! -e other ] && [ -z "$(ls -d .oriel-* 2>/dev/null)" ] || fail "a refused import leaves something"
 
+# What cannot be drawn for want of points says how to get them.
+runs 0 "$oriel" import moving --out hollow
+grep -q -- '--points densify' stderr.txt || fail "does not warn of a scene without points"
+runs 2 "$oriel" render hollow --at cam00 --out none.png
+grep -q -- '--points densify' stderr.txt || fail "does not say how to get points"
+
 # What COLMAP wrote imports as it is; a scene is such a workspace.
 runs 0 "$oriel" import moving --out again --test-every 3
 same "workspace's photographs" "$(count again registered)" 6

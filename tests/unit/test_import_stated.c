@@ -268,6 +268,33 @@ static void finds_the_pictures_of_a_model(void **state)
     free(model);
 }
 
+// A COLMAP workspace brings its fused cloud; where nothing is left to draw, import says what helps.
+static void takes_the_cloud_of_a_workspace(void **state)
+{
+    struct work *w = *state;
+    save_picture(w, "images/a.png", false);
+    save_picture(w, "images/b.png", false);
+    save(w, "sparse/0/cameras.txt", "7 PINHOLE 64 48 60 60 32 24\n");
+    save(w, "sparse/0/images.txt", "1 1 0 0 0 0 0 4 7 a.png\n2 1 0 0 0 1 0 4 7 b.png\n");
+    assert_int_equal(import(w, NULL), ORL_OK);
+    assert_int_equal(w->scene->points.count, 0);
+    says(w, "neither points nor a mesh nor silhouettes");
+    says(w, "--points densify");
+    says(w, "--points FILE");
+    orl_scene_destroy(&w->scene);
+    assert_int_equal(orl_dir_remove(NULL, w->out), ORL_OK);
+    save(w, "fused.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nend_header\n0 0 0\n0.1 0 0\n0 0.1 0\n0.1 0.1 0\n");
+    assert_int_equal(import(w, NULL), ORL_OK);
+    assert_int_equal(w->scene->points.count, 4);
+    assert_true(w->scene->points.radius[0] > 0);
+    assert_null(strstr(w->said.text, "neither points"));
+    orl_scene_destroy(&w->scene);
+    assert_int_equal(orl_dir_remove(NULL, w->out), ORL_OK);
+    assert_int_equal(import(w, &(struct orl_import_params){ORL_IMPORT_DEFAULTS, .points = ORL_IMPORT_NO_POINTS}), ORL_OK);
+    assert_int_equal(w->scene->points.count, 0);
+}
+
 // Alpha means the same whatever the cameras' format, and a folder of masks that nobody names is told of.
 static void takes_alpha_of_any_format(void **state)
 {
@@ -374,6 +401,7 @@ int main(void)
         TEST(says_what_is_too_wide_for_a_flat_picture), TEST(doubts_a_principal_point_in_a_corner),
         TEST(leaves_out_what_is_no_picture), TEST(finds_pictures_in_folders), TEST(keeps_a_far_origin), TEST(finds_the_pictures_of_a_model),
         TEST(finds_pictures_by_other_names), TEST(takes_alpha_of_any_format),
+        TEST(takes_the_cloud_of_a_workspace),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

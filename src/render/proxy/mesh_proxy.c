@@ -72,7 +72,9 @@ static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
     state->time_step = scene->frame;
     if (!orl_path_is_file(path.text))
         return orl_fail(log, ORL_ERR_NOT_FOUND,
-                        "%s: not there; --mesh of oriel prepare or oriel import makes one", path.text);
+                        "%s: not there; --mesh of oriel prepare or oriel import makes one%s", path.text,
+                        scene->points.count ? "" : ". The scene has no points, either: --points densify or --points FILE "
+                                                   "of oriel import gives it some");
     ORL_TRY(orl_mesh_read(log, path.text, NULL, &state->mesh));
     return orl_mesh_state_upload(gpu, state);
 }
