@@ -1,6 +1,7 @@
 // The scene's files besides the photographs: sparse model, points, mesh, manifest.
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/json.h"
 #include "core/memory.h"
@@ -215,20 +216,38 @@ static json_t *left_out(const struct import_job *job)
     return list;
 }
 
+// Adds {name in the scene: checksum} of a file, or of all files in a folder.
+static enum orl_result sum_files(const struct import_job *job, const char *path, json_t *sums)
+{
+    if (orl_progress_cancelled(job->progress))
+        return ORL_ERR_CANCELLED;
+    if (!orl_path_is_dir(path)) {
+        char sum[ORL_CHECKSUM_SIZE];
+        ORL_TRY(orl_file_checksum(job->log, path, sum));
+        return json_object_set_new(sums, path + strlen(job->dir) + 1, json_string(sum)) == 0
+                   ? ORL_OK : orl_fail(job->log, ORL_ERR_MEMORY, "%s: no memory for its checksum", path);
+    }
+    struct orl_names names;
+    enum orl_result result = orl_dir_list(job->log, path, &names);
+    for (size_t i = 0; result == ORL_OK && i < names.count; i++)
+        if (strcmp(names.items[i], "logs") != 0) // of COLMAP's runs
+            result = sum_files(job, ORL_PATH(path, "%s", names.items[i]), sums);
+    orl_names_finish(&names);
+    return result;
+}
+
 // Of a scene that import makes alone.
 static enum orl_result make_manifest(const struct import_job *job, size_t points, json_t **root)
 {
     json_int_t used = (json_int_t)job->view_count, test = 0;
-    char sum[ORL_CHECKSUM_SIZE];
-    ORL_TRY(orl_file_checksum(job->log, ORL_PATH(job->dir, "points.ply"), sum));
     for (size_t i = 0; i < job->view_count; i++)
         test += job->views[i].test;
     *root = json_pack(
-        "{s:s, s:i, s:s, s:{s:n, s:i, s:I, s:I, s:I, s:I, s:n, s:I, s:I}, s:o, s:n, s:{}, s:{s:s}}", "format",
+        "{s:s, s:i, s:s, s:{s:n, s:i, s:I, s:I, s:I, s:I, s:n, s:I, s:I}, s:o, s:n, s:{}}", "format",
         "oriel scene", "version", ORL_MANIFEST_VERSION, "made_by", "oriel " ORL_VERSION, "counts", "given",
         "skipped", 0, "used", used, "registered", used, "train", used - test, "test", test, "left_out",
         "sparse_points", (json_int_t)job->known.model.point_count, "points", (json_int_t)points, "photographs",
-        photographs(job), "left_out", "stages", "checksums", "points.ply", sum);
+        photographs(job), "left_out", "stages");
     return *root ? ORL_OK : orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the scene");
 }
 
@@ -271,10 +290,13 @@ static void set_import(const struct import_job *job, json_t *root)
 
 enum orl_result orl_import_write_manifest(const struct import_job *job, size_t points, size_t triangles)
 {
-    json_t *root = NULL;
+    json_t *root = NULL, *sums = json_object();
     const char *path = ORL_PATH(job->dir, "scene.json");
-    enum orl_result result = job->params->points == ORL_IMPORT_DENSIFY ? orl_json_read(job->log, path, &root)
-                                                                       : make_manifest(job, points, &root);
+    enum orl_result result = sum_files(job, job->dir, sums);
+    json_object_del(sums, "scene.json"); // which prepare's stages wrote and this changes
+    if (result == ORL_OK)
+        result = job->params->points == ORL_IMPORT_DENSIFY ? orl_json_read(job->log, path, &root)
+                                                           : make_manifest(job, points, &root);
     if (result == ORL_OK) {
         json_t *numbers = json_object_get(root, "counts"), *missing = left_out(job);
         set_import(job, root);
@@ -283,8 +305,10 @@ enum orl_result orl_import_write_manifest(const struct import_job *job, size_t p
         json_object_set_new(numbers, "triangles", json_integer((json_int_t)triangles));
         json_object_set_new(numbers, "frames", json_integer((json_int_t)job->frame_count));
         json_object_set_new(root, "left_out", missing);
+        json_object_set(root, "checksums", sums);
         result = orl_json_write(job->log, path, root);
     }
+    json_decref(sums);
     json_decref(root);
     return result;
 }

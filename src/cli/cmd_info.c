@@ -105,9 +105,9 @@ static enum orl_result check(const struct orl_log *log, const char *dir)
     size_t bad, files;
     ORL_TRY(orl_manifest_check(log, dir, &bad, &files));
     if (bad)
-        return orl_fail(log, ORL_ERR_DATA,
-                        "%s: %zu of %zu files are damaged; oriel prepare --resume makes them again",
-                        dir, bad, files);
+        return orl_fail(log, ORL_ERR_DATA, "%s: %zu of %zu files are damaged%s", dir, bad, files,
+                        orl_path_is_file(ORL_PATH(dir, ".oriel/stages.json"))
+                            ? "; oriel prepare --resume makes them again" : "");
     printf("checked      %zu files, all as they were made\n", files);
     return ORL_OK;
 }

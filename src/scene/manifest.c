@@ -247,7 +247,7 @@ static void check_files(const struct orl_log *log, const char *dir, const json_t
                     orl_file_checksum(NULL, path, sum) == ORL_OK;
         if (!read || strcmp(sum, told) != 0) {
             orl_logf(log, level, "%s: %s", path,
-                     read ? "changed since the scene was prepared" : "missing or cannot be read");
+                     read ? "changed since the scene was made" : "missing or cannot be read");
             ++*bad;
         }
     }

@@ -67,6 +67,18 @@ runs 2 "$oriel" import cut.json --images set/images --out other
 grep -q 'cut.json: line ' stderr.txt || fail "does not name the line"
 [ ! -e other ] && [ -z "$(ls -d .oriel-* 2>/dev/null)" ] || fail "a refused import leaves something"
 
+# Every file of an imported scene has a checksum. An import cannot be resumed, so no advice says so.
+runs 0 "$oriel" info moving --check
+for file in images/cam05.jpg masks/cam05.jpg.png frames/00003/images/cam05.jpg mesh.ply sparse/images.bin; do
+    cp "moving/$file" kept
+    truncate -s 100 "moving/$file"
+    runs 2 "$oriel" info moving --check
+    grep -q "$file: changed since" stderr.txt || fail "does not name $file"
+    grep -q -- --resume stderr.txt && fail "wants to resume an import"
+    cp kept "moving/$file"
+done
+runs 0 "$oriel" info moving --check
+
 # What cannot be drawn for want of points says how to get them.
 runs 0 "$oriel" import moving --out hollow
 grep -q -- '--points densify' stderr.txt || fail "does not warn of a scene without points"
@@ -88,6 +100,7 @@ if command -v colmap >/dev/null; then
         --quality draft --test-list 0003 --out dense
     grep -q '7 registered (6 train, 1 held out)' stdout.txt || fail "does not print the counts"
     [ "$(count dense points)" -ge 1000 ] || fail "only $(count dense points) points"
+    runs 0 "$oriel" info dense --check
     [ ! -e dense/.oriel ] && [ ! -e dense/stereo ] || fail "what was needed on the way is left over"
     runs 0 "$oriel" eval dense --method points
     # The silhouettes of cameras all around close the surfaces, and do no harm to the picture.

@@ -275,7 +275,7 @@ static void warns_of_other_points(void **state)
     struct orl_log log = log_to(&said);
     struct orl_scene *scene;
     assert_int_equal(orl_scene_open(&log, dir, &scene), ORL_OK);
-    assert_non_null(strstr(said.text, "changed since the scene was prepared"));
+    assert_non_null(strstr(said.text, "changed since the scene was made"));
     orl_scene_destroy(&scene);
     test_dir_remove(dir);
 }
