@@ -302,6 +302,10 @@ class Page(Visitors):
         self.assertIn("?start=2&mode=fly&ui=none", self.browser.address())
         self.browser.keys("KeyM", "m") # nothing would be seen of what it opens
         self.assertTrue(self.hidden("map"))
+        name = self.js("return oriel.photos[1].name")
+        for said in name, name.rpartition(".")[0]:
+            self.open(f"?start={said}")
+            self.assertEqual(self.js("return oriel.navigator.at.number"), 1)
 
     def test_strict_policy(self):
         server = Server(SITE, {"Content-Security-Policy": "default-src 'self'"})

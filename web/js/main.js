@@ -437,10 +437,11 @@ class Walk {
         nav.setMode(nav.modes.includes(mode) ? mode : nav.mode);
     }
 
-    // By number from 1, or by name.
+    // By number from 1, or by name, with its extension or without.
     photoOf(said)
     {
-        return this.photos[Number(said) - 1] || this.photos.find(photo => photo.name === said);
+        return this.photos[Number(said) - 1] ||
+               this.photos.find(({name}) => name === said || name.replace(/\.[^.]*$/, "") === said);
     }
 
     writeAddress()
