@@ -20,7 +20,7 @@
     ROW(position, "position", LIST("X,Y,Z"), "of the panorama, in the scene's units") \
     ROW(up, "up", LIST("X,Y,Z"), \
         "of the panorama; default: the photographs' mean upward direction") \
-    ROW(out, "out", NEEDED("FILE|DIR"), ".exr or .png; for several views or a scene a folder") \
+    ROW(out, "out", NEEDED("FILE|DIR"), ".exr or .png; for a path a folder or .mp4; for a scene a folder") \
     ROW(samples, "samples", INT(1, 1, 4, "N"), "N x N samples a pixel") \
     ROW(merge, "merge", CHOICE(orl_hdr_merge, ORL_HDR_MERGES, ORL_HDR_FUSED, "NAME"), \
         "one gather in radiance, or a picture of each series, merged") \
@@ -108,18 +108,20 @@ static enum orl_result check(const struct hdr_options *o, const struct orl_log *
     if (replace && (o->size.width || o->layers.count || o->light))
         return orl_fail(log, ORL_ERR_ARGUMENT, "hdr: --replace-series makes photographs: without "
                         "--size, --layers and --light");
-    bool many = o->path || replace, file = orl_frame_can_write(o->out);
-    if (many && file)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: several views need a folder", o->out);
-    if (!many && !file)
+    bool file = orl_frame_can_write(o->out);
+    if (o->path)
+        return orl_sequence_check_out(log, o->out, false, o->layers.count);
+    if (replace && file)
+        return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: a scene needs a folder", o->out);
+    if (!replace && !file)
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .exr or .png", o->out);
     return ORL_OK;
 }
 
-// By default all layers; a picture format for viewing has colour only.
+// By default all layers; a format for viewing has colour only.
 static void default_layers(const struct hdr_options *o, struct orl_frame_layers *layers)
 {
-    if (!o->layers.count && !orl_path_has_extension(o->out, "png"))
+    if (!o->layers.count && !orl_path_has_extension(o->out, "png mp4"))
         *layers = (struct orl_frame_layers){true, true, true, true};
 }
 
@@ -160,7 +162,7 @@ static enum orl_result draw_all(struct job *job)
     const struct orl_sequence all = {.views = call->path.views, .count = call->path.count,
                                      .draw = draw, .priv = job, .output = &job->output,
                                      .step = "hdr", .progress = call->progress};
-    return o->path ? orl_sequence_write_dir(call->log, &all, o->out, "exr")
+    return o->path ? orl_sequence_write(call->log, &all, o->out, "exr", o->fps)
                    : orl_sequence_write_view(call->log, &all, &call->path.views[0], o->out);
 }
 

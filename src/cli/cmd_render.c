@@ -1,6 +1,4 @@
 // oriel render: renders one view, or every view of a camera path.
-#include <string.h>
-
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/choice.h"
@@ -23,9 +21,8 @@ struct job {
     ROW(exclude, "exclude", LIST("A,B"), "photographs not to use") \
     LIGHT_OPTION(ROW) \
     RADIANCE_OPTION(ROW) \
-    OUTPUT_OPTIONS(ROW, "also write depth, normal, coverage") \
+    OUTPUT_OPTIONS(ROW, "also write depth, normal, coverage; frames of a path become .exr") \
     ROW(part, "part", PART, "only the K-th of N parts of the frames of a path") \
-    ROW(fps, "fps", NUMBER(30, 1, 240, "N"), "of .mp4") \
     TEXTURES_OPTION(ROW) \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(render_command, RENDER_OPTIONS)
@@ -49,12 +46,6 @@ static enum orl_result draw(void *priv, const struct orl_view *view, struct orl_
     return orl_renderer_draw(call->renderer, view, &job->choice.params, call->skip, frame);
 }
 
-static bool is_video(const char *out)
-{
-    const char *extension = strrchr(out, '.');
-    return extension && strcmp(extension, ".mp4") == 0;
-}
-
 static enum orl_result draw_all(struct job *job)
 {
     const struct call *call = job->call;
@@ -69,14 +60,7 @@ static enum orl_result draw_all(struct job *job)
         .output = &job->output, .step = "render", .progress = call->progress};
     if (!o->path)
         return orl_sequence_write_view(call->log, &sequence, &path->views[0], o->out);
-    if (is_video(o->out))
-        return orl_sequence_write_video(call->log, &sequence, o->out, o->fps);
-    if (orl_frame_can_write(o->out))
-        return orl_fail(call->log, ORL_ERR_ARGUMENT,
-                        "--out %s: a path needs a folder or an .mp4 file", o->out);
-    const struct orl_frame_layers *layers = &job->output.layers;
-    bool exr = layers->depth || layers->normal || layers->coverage;
-    return orl_sequence_write_dir(call->log, &sequence, o->out, exr ? "exr" : "png");
+    return orl_sequence_write(call->log, &sequence, o->out, o->layers.count ? "exr" : "png", o->fps);
 }
 
 static enum orl_result check(const struct orl_log *log, const struct render_command *o)
@@ -84,10 +68,12 @@ static enum orl_result check(const struct orl_log *log, const struct render_comm
     if (!!o->at + !!o->camera + !!o->path != 1)
         return orl_fail(log, ORL_ERR_ARGUMENT,
                         "render: one of --at PHOTO, --camera FILE, --path FILE is needed");
-    if (o->part.count && (!o->path || is_video(o->out)))
+    if (o->part.count && (!o->path || orl_sequence_is_video(o->out)))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--part: only the frames of a path in a folder have "
                         "parts");
-    if (!o->path && !orl_frame_can_write(o->out))
+    if (o->path)
+        ORL_TRY(orl_sequence_check_out(log, o->out, o->part.count, o->layers.count));
+    else if (!orl_frame_can_write(o->out))
         return orl_fail(log, ORL_ERR_ARGUMENT, "--out %s: must end in .png or .exr", o->out);
     return o->method && !orl_method_find(log, o->method) ? ORL_ERR_ARGUMENT : ORL_OK;
 }

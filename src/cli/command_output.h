@@ -55,6 +55,7 @@ const char *output_tone_name(size_t index);
     ROW(tone, "tone", NAMED(output_tone_name, ORL_TONE_SRGB, "NAME"), "of .png and .mp4") \
     ROW(white, "white", NUMBER(8, 1e-3, 1e6, "L"), \
         "of reinhard: the luminance that becomes white") \
+    ROW(fps, "fps", NUMBER(30, 1, 240, "N"), "of .mp4") \
     ROW(float_color, "float", FLAG, "of .exr: 32-bit colour; default: 16-bit") \
     ROW(compression, "compression", \
         CHOICE(orl_exr_compression, ORL_EXR_COMPRESSIONS, ORL_EXR_ZIP, "NAME"), "of .exr")

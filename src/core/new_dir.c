@@ -92,7 +92,7 @@ static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
     return orl_dir_make(log, orl_path_print(dir->path, dir->outer, "new"));
 }
 
-static enum orl_result refuse_used(const struct orl_log *log, const char *out)
+enum orl_result orl_new_dir_refuse_used(const struct orl_log *log, const char *out)
 {
     struct orl_names names = {0};
     enum orl_result result = ORL_OK;
@@ -111,7 +111,7 @@ enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, bo
 {
     *dir = (struct orl_new_dir){.fd = -1, .over = over};
     if (!over)
-        ORL_TRY(refuse_used(log, out));
+        ORL_TRY(orl_new_dir_refuse_used(log, out));
     ORL_TRY(orl_path_follow(log, ORL_PATH("", "%.*s", orl_path_bare(out), out), dir->out));
     const char *name = orl_path_name(dir->out);
     const char *parent = name == dir->out ? "." : ORL_PATH("", "%.*s", (int)(name - dir->out), dir->out);

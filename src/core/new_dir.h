@@ -16,7 +16,9 @@ struct orl_new_dir {
     bool over;                 // replaces what has its final name
 };
 
-// Refuses an `out` that is a file or a folder that is not empty, unless the new folder goes `over` it.
+// ORL_ERR_ARGUMENT, logged: `out` is a file or a folder that is not empty.
+enum orl_result orl_new_dir_refuse_used(const struct orl_log *log, const char *out) ORL_CHECK_RESULT;
+// Refuses such an `out`, unless the new folder goes `over` it.
 // Then, where names cannot be exchanged and an earlier run ended between two renames, this gives `out`
 // its name back.
 enum orl_result orl_new_dir_begin(const struct orl_log *log, const char *out, bool over,

@@ -167,6 +167,15 @@ enum orl_result orl_video_inspect(const struct orl_log *log, const struct orl_pr
 
 // --- frames ---
 
+enum orl_result orl_video_can_encode(const struct orl_log *log, const char *path)
+{
+    const char *const argv[] = {"ffmpeg", "-version", NULL};
+    enum orl_result result = orl_process_run(log, &(struct orl_process_params){.argv = argv}, NULL);
+    return result == ORL_ERR_NOT_FOUND ? orl_fail(log, result, "%s: ffmpeg is needed to write a video (Debian: "
+                                                  "apt install ffmpeg)", path)
+                                       : result;
+}
+
 enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_progress *progress,
                                  const char *frames_dir, double fps, const char *path)
 {

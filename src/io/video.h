@@ -24,6 +24,8 @@ enum orl_result orl_video_inspect(const struct orl_log *log, const struct orl_pr
                                   const char *path, bool square,
                                   struct orl_video *video) ORL_CHECK_RESULT;
 
+// ORL_ERR_NOT_FOUND, logged: ffmpeg, which orl_video_encode needs to make `path`, is not installed.
+enum orl_result orl_video_can_encode(const struct orl_log *log, const char *path) ORL_CHECK_RESULT;
 // Encodes FRAMES_DIR/%05d.png, from 00000.png on, to `path` (.mp4, H.264, tagged as BT.709 with the
 // curve of sRGB), which is written atomically. ORL_ERR_NOT_FOUND when ffmpeg is not installed.
 enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_progress *progress,

@@ -78,9 +78,7 @@ static enum orl_result write_frames(struct run *run, const char *format,
     const struct orl_sequence sequence = {
         .views = run->path.views, .count = run->path.count, .draw = draw, .priv = run,
         .output = &output, .step = "render", .progress = r->progress};
-    return strcmp(format, "mp4") == 0
-               ? orl_sequence_write_video(r->log, &sequence, run->file, FPS)
-               : orl_sequence_write_dir(r->log, &sequence, run->file, format);
+    return orl_sequence_write(r->log, &sequence, run->file, format, FPS);
 }
 
 enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering, const json_t *message)
@@ -90,6 +88,7 @@ enum orl_result orl_walk_rendering_run(const struct walk_rendering *rendering, c
     const char *format = orl_json_text(message, "format");
     (void)orl_walk_tone_read(message, &tone); // which the message has been checked for
     enum orl_result result = name_files(&run, format);
+    ORL_THEN(result, orl_sequence_check_out(rendering->log, run.file, true, false));
     ORL_THEN(result, read_path(&run, json_object_get(message, "render")));
     ORL_THEN(result, write_frames(&run, format, &tone));
     if (result == ORL_OK)

@@ -72,6 +72,13 @@ mv moved.exr replaced/images_linear/0001.jpg.exr
 # A path, a panorama.
 runs 0 "$oriel" hdr scene --path photos --frames 2 --size 48x32 --out path
 [ -s path/00001.exr ] || fail "no second frame"
+runs 2 "$oriel" hdr scene --path photos --frames 2 --size 48x32 --out path
+runs 2 "$oriel" hdr scene --path photos --frames 2 --size 48x32 --out path.webm
+if command -v ffprobe >/dev/null; then
+    runs 0 "$oriel" hdr scene --path photos --frames 2 --size 48x32 --out path.mp4
+    frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 path.mp4)
+    [ "$frames" = 2 ] || fail "$frames frames of a video instead of 2"
+fi
 runs 0 "$oriel" hdr scene --at 0008 --panorama 64x32 --out around.exr
 runs 0 "$oriel" hdr scene --position 0,2,6 --up 0,1,0 --panorama 64x32 --out around2.exr
 if command -v exrheader >/dev/null; then

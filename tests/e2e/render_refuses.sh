@@ -69,7 +69,16 @@ refuses 2 'depth, normal, coverage' "$oriel" render ws --at 0001 --out out.png -
 refuses 2 'velvia.*reinhard, filmic' "$oriel" render ws --at 0001 --out out.png --tone velvia
 refuses 2 'zip, piz' "$oriel" render ws --at 0001 --out out.exr --compression jpeg
 refuses 2 'WxH' "$oriel" render ws --at 0001 --out out.png --size 0x9
-refuses 2 'folder or an .mp4' "$oriel" render ws --path photos --frames 2 --out out.png
+for extension in png exr webm mov jpg; do
+    refuses 2 'folder or an .mp4' "$oriel" "${path[@]}" --out out.$extension
+done
+refuses 2 'a video has no --layers' "$oriel" "${path[@]}" --out out.mp4 --layers depth
+refuses 2 'whole: not empty' "$oriel" "${path[@]}" --out whole
+"$oriel" "${path[@]}" --out layered --layers depth && [ "$(ls layered | head -n 1)" = 00000.exr ] ||
+    { echo "frames with layers are not .exr" >&2; failed=1; }
+# Without ffmpeg not even the scene is opened.
+mkdir no-programs
+refuses 2 'ffmpeg is needed' env PATH="$work/no-programs" "$oriel" render not-there --path photos --out out.mp4
 refuses 2 'missing.json' "$oriel" render ws --camera missing.json --out out.png
 echo '{"keyframes": [{"photo": "0001"}, {"photo": ' >cut.json
 refuses 2 'cut.json: line' "$oriel" render ws --path cut.json --out out.dir

@@ -19,11 +19,16 @@ struct orl_sequence {
 enum orl_result orl_sequence_write_view(const struct orl_log *log, const struct orl_sequence *s,
                                         const struct orl_view *view,
                                         const char *file) ORL_CHECK_RESULT;
-// The views as DIR/00000.EXTENSION and on, by their index; the folder is made if need be.
-enum orl_result orl_sequence_write_dir(const struct orl_log *log, const struct orl_sequence *s,
-                                       const char *dir, const char *extension) ORL_CHECK_RESULT;
-// All views as a video. Frames are kept in FILE.frames meanwhile, which must not be there.
-enum orl_result orl_sequence_write_video(const struct orl_log *log, const struct orl_sequence *s,
-                                         const char *file, double fps) ORL_CHECK_RESULT;
+// True for an .mp4 file.
+bool orl_sequence_is_video(const char *out);
+// ORL_ERR_ARGUMENT, logged: `out` is neither an .mp4 file nor a folder for frames, or it is a folder with
+// something in it and `beside` is false, or layers are wanted of a video. ORL_ERR_NOT_FOUND: a video needs
+// ffmpeg, which is not installed.
+enum orl_result orl_sequence_check_out(const struct orl_log *log, const char *out, bool beside,
+                                       bool layers) ORL_CHECK_RESULT;
+// All views as a video, or as OUT/00000.EXTENSION and on, by their index; the folder is made if need be.
+// Frames of a video are kept in OUT.frames meanwhile, which must not be there.
+enum orl_result orl_sequence_write(const struct orl_log *log, const struct orl_sequence *s,
+                                   const char *out, const char *extension, double fps) ORL_CHECK_RESULT;
 
 #endif
