@@ -176,7 +176,7 @@ run 2 info "$scene"
 damage points.ply radii ""
 printf '\1' | dd of="$scene/points.ply" bs=1 seek=600 conv=notrunc status=none
 run 0 info "$scene"
-says "points.ply: changed since the scene was prepared"
+says "points.ply: changed since the scene was made"
 damage points.ply radii ""
 
 # One that does not come out the same, here since the stereo found other points, takes what was
