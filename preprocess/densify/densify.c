@@ -411,6 +411,19 @@ static enum orl_result plan_memory(struct densifier *d)
     return ORL_OK;
 }
 
+// What COLMAP's fusion reads, unless prepare, COLMAP or the user has listed photographs already.
+static enum orl_result write_fusion_list(const struct densifier *d)
+{
+    const char *path = ORL_PATH(d->workspace, "stereo/fusion.cfg");
+    struct orl_atomic_file file;
+    if (orl_path_is_file(path))
+        return ORL_OK;
+    ORL_TRY(orl_atomic_open(d->log, path, &file));
+    for (size_t i = 0; i < d->photos.count; i++)
+        fprintf(file.stream, "%s\n", densify_photo_name(&d->photos, i));
+    return orl_atomic_commit(d->log, &file);
+}
+
 static enum orl_result open_workspace(struct densifier *d, const struct orl_names *names)
 {
     d->model = d->params.model ? d->params.model : &d->own_model;
@@ -428,7 +441,8 @@ static enum orl_result open_workspace(struct densifier *d, const struct orl_name
     ORL_TRY(orl_densify_claim_maps(d->log, d->workspace, &d->photos, &d->params, d->shrink));
     ORL_TRY(orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/depth_maps")));
     ORL_TRY(orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/normal_maps")));
-    return orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/confidence_maps"));
+    ORL_TRY(orl_dir_make(d->log, ORL_PATH(d->workspace, "stereo/confidence_maps")));
+    return write_fusion_list(d);
 }
 
 // Two densifiers in one workspace would overwrite each other's maps, but for parts.

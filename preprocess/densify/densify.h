@@ -48,7 +48,8 @@ const struct orl_option *orl_densify_options(void);
 
 // Writes WORKSPACE/stereo/{depth_maps,normal_maps}/NAME.{photometric,geometric}.bin for every
 // photograph in `photos` (names; NULL: all of the model), and the last pass's
-// confidence_maps/NAME.geometric.bin. Confidence maps have the same format: 0 without depth, 0.2
+// confidence_maps/NAME.geometric.bin. Where there is no stereo/fusion.cfg, it writes one that lists these
+// photographs, as colmap stereo_fusion needs it. Confidence maps have the same format: 0 without depth, 0.2
 // where a plain surface was completed from its surroundings, up to 1 where many sources agree. Only
 // `photos` serve as sources. Existing maps are kept when stereo/densify.json says that they were
 // made from the same photographs with the same settings; otherwise all maps are made again. The

@@ -437,6 +437,28 @@ static void test_maps_of_others_stay(void **state)
     test_dir_remove(dir);
 }
 
+// colmap stereo_fusion needs a list of the photographs. One that is there stays.
+static void test_fusion_list(void **state)
+{
+    (void)state;
+    struct plane_scene scene = make_scene(40, 32, 0, 0);
+    char *dir = make_workspace(&scene), path[4096], *items[] = {"a.png", "b.png", "c.png"};
+    struct orl_names photos = {.count = 3, .items = items}, listed = {0};
+    snprintf(path, sizeof path, "%s/stereo/fusion.cfg", dir);
+    assert_int_equal(orl_densify(gpu, dir, &photos, &quick, NULL), ORL_OK);
+    assert_int_equal(orl_file_read_names(NULL, path, &listed), ORL_OK);
+    assert_int_equal(listed.count, 3);
+    for (size_t i = 0; i < listed.count; i++)
+        assert_string_equal(listed.items[i], items[i]);
+    orl_names_finish(&listed);
+    assert_int_equal(orl_file_write(NULL, path, "b.png\n", 6), ORL_OK);
+    assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_OK);
+    assert_int_equal(orl_file_read_names(NULL, path, &listed), ORL_OK);
+    assert_int_equal(listed.count, 1);
+    orl_names_finish(&listed);
+    test_dir_remove(dir);
+}
+
 static void test_masks(void **state)
 {
     (void)state;
@@ -619,7 +641,7 @@ int main(void)
         cmocka_unit_test(test_resume_keeps_finished_maps),
         cmocka_unit_test(test_other_settings_make_maps_again),
         cmocka_unit_test(test_links_and_locks),
-        cmocka_unit_test(test_maps_of_others_stay),
+        cmocka_unit_test(test_maps_of_others_stay), cmocka_unit_test(test_fusion_list),
         cmocka_unit_test(test_masks),
         cmocka_unit_test(test_lonely_photographs),
         cmocka_unit_test(test_bad_settings),
