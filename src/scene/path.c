@@ -210,6 +210,7 @@ static enum orl_result check_view(const struct orl_log *log, const char *file, c
 
 // --- Oriel keyframes ---
 
+// A photograph that it names must be in the scene.
 static bool read_key(const struct orl_scene *scene, const json_t *key, struct orl_view *view,
                      double *seconds)
 {
@@ -219,10 +220,7 @@ static bool read_key(const struct orl_scene *scene, const json_t *key, struct or
     const char *photo = json_string_value(json_object_get(key, "photo"));
     const json_t *matrix = json_object_get(key, "cam_from_world");
     if (photo) {
-        int index = orl_scene_find_photo(scene, photo);
-        if (index < 0)
-            return false;
-        *view = scene->photos[index].view;
+        *view = scene->photos[orl_scene_find_photo(scene, photo)].view;
     } else if (matrix) {
         if (!orl_json_pose(matrix, &view->cam_from_world))
             return false;
@@ -254,8 +252,15 @@ static enum orl_result read_keyframes(const struct orl_log *log, const struct or
     double *seconds = orl_array(log, read.count, sizeof *seconds);
     enum orl_result result = seconds ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < read.count; i++) {
+        const json_t *key = json_array_get(keys, i);
+        const char *photo = json_string_value(json_object_get(key, "photo"));
+        if (photo && orl_scene_find_photo(scene, photo) < 0) {
+            result = orl_fail(log, ORL_ERR_FORMAT, "%s: keyframe %zu is not usable: the scene has no photograph %s",
+                              file, i, photo);
+            break;
+        }
         read.views[i].camera = scene->photos[0].view.camera;
-        bool ok = read_key(scene, json_array_get(keys, i), &read.views[i], &seconds[i]);
+        bool ok = read_key(scene, key, &read.views[i], &seconds[i]);
         result = check_view(log, file, "keyframe", i, ok, &read.views[i]);
     }
     if (result == ORL_OK && frames) {

@@ -315,6 +315,8 @@ static void refusals_say_why(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {
+        {"{\"keyframes\": [{\"photo\": \"a\"}, {\"photo\": \"none\"}]}",
+         "bad.json: keyframe 1 is not usable: the scene has no photograph none"},
         {"{\"keyframes\": [{\"photo\": \"a\"}, {\"cam_from_world\": [[-1,0,0,0],[0,1,0,0],[0,0,1,0]]}]}",
          "bad.json: keyframe 1 is not usable: its axes are no rotation, or a mirror's"},
         {"{\"keyframes\": [{\"cam_from_world\": [[1,0,0,1e308],[0,1,0,0],[0,0,1,0]]}]}",
