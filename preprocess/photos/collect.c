@@ -91,7 +91,7 @@ static void drop_jpegs_of_raw(struct orl_job *job)
 }
 
 // A file given twice counts once. Two files of one name are an error, since COLMAP cannot tell them
-// apart.
+// apart. The names of their folders would, if they are equal below the folders that were given.
 static enum orl_result drop_duplicates(struct orl_job *job)
 {
     if (job->source_count)
@@ -104,9 +104,10 @@ static enum orl_result drop_duplicates(struct orl_job *job)
             continue;
         }
         if (strcmp(last->path, source->path) != 0)
-            return orl_fail(job->log, ORL_ERR_ARGUMENT,
-                            "%s and %s have the same name, %s: rename one, or give the "
-                            "folder that holds both", last->path, source->path, source->name);
+            return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s and %s have the same name, %s: rename one, or %s",
+                            last->path, source->path, source->name,
+                            strcmp(last->given, source->given) == 0 ? "give the folder that holds both"
+                                                                    : "take it out of the folder");
         orl_source_finish(source);
         job->given--;
     }

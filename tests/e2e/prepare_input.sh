@@ -29,6 +29,12 @@ done
 run 2 prepare "$work/deep/a.png" "$work/deep/inner" --out "$work/s"
 says "have the same name, a.png: rename one, or give the folder that holds both"
 
+# Where the folder that holds both was given, another advice helps.
+photos "$work/twins/a" b.png
+photos "$work/twins" a_b.png
+run 2 prepare "$work/twins" --out "$work/s"
+says "have the same name, a_b.png: rename one, or take it out of the folder"
+
 # Photographs of one picture are named, and left out if that is wanted.
 photos "$work/same" a.png b.png c.png
 run 2 prepare "$work/same" --out "$work/s" --leave-out duplicates
