@@ -261,6 +261,9 @@ static enum orl_result add_input(struct orl_job *job, const char *input)
         return is_video_name(orl_path_name(input)) && orl_path_is_file(input)
                    ? add_video(job, input, orl_path_name(input))
                    : add_photo(job, input, orl_path_name(input));
+    if (orl_path_is_file(ORL_PATH(input, "scene.json")))
+        return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s: a scene; give the photographs that it was made of, or its "
+                        "folder images", input);
     ORL_TRY(add_folder(job, input, "", NULL));
     if (job->given == before)
         return orl_fail(job->log, ORL_ERR_NOT_FOUND,

@@ -35,6 +35,11 @@ photos "$work/twins" a_b.png
 run 2 prepare "$work/twins" --out "$work/s"
 says "have the same name, a_b.png: rename one, or take it out of the folder"
 
+# A scene is no folder of photographs: its own were resampled, and masks and maps are beside them.
+run 2 prepare "$work/deep/scene" --out "$work/s"
+says "$work/deep/scene: a scene; give the photographs that it was made of"
+[ -e "$work/s" ] && fail "a scene folder was left behind"
+
 # Photographs of one picture are named, and left out if that is wanted.
 photos "$work/same" a.png b.png c.png
 run 2 prepare "$work/same" --out "$work/s" --leave-out duplicates
