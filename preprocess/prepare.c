@@ -56,14 +56,18 @@ static enum orl_result refine(struct orl_job *job)
     struct orl_refine_report report = {0};
     struct orl_scene *scene = NULL;
     struct orl_gpu *gpu = NULL;
+    double start = orl_time_s(), start_cpu = orl_cpu_time_s();
     params.seed = job->params->seed;
     params.max_vram_bytes = job->params->max_vram_bytes;
     enum orl_result result = orl_scene_open(job->log, job->dir, &scene);
     ORL_THEN(result, orl_choice_make(job->log, scene, ORL_SAMPLE_SRGB, NULL, &(struct orl_names){0}, &params.choice));
     if (result == ORL_OK)
         gpu = orl_drawing_device(job, scene, "refine: no soft splats are made");
-    if (gpu)
+    if (gpu) {
         result = orl_refine(gpu, scene, &params, &report);
+        ORL_THEN(result, orl_stages_record_refine(job, start, start_cpu));
+        ORL_THEN(result, orl_scene_json_write(job)); // with this record
+    }
     if (result == ORL_OK && gpu)
         orl_logf(job->log, ORL_LOG_INFO, "refine: %zu splats; %zu photographs that they had not seen: %.3f dB, %.3f "
                  "without splats", report.splats, report.checks, report.psnr_db, report.before_psnr_db);

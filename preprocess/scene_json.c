@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/arguments.h"
+#include "preprocess/stages.h"
 #include "scene/manifest.h"
 
 static json_t *stage_value(const json_t *done, const char *stage, const char *key)
@@ -21,21 +22,26 @@ static json_t *settings(const struct orl_prepare_params *p)
     return settings;
 }
 
-// The stages' records in order, without the parts that scene.json has elsewhere.
-static json_t *copy_stages(const json_t *plan, const json_t *done)
+// Adds a stage's record without the parts that scene.json has elsewhere.
+static void copy_stage(const json_t *done, const char *name, json_t *stages)
 {
     static const char *const elsewhere[] = {"photographs", "responses", "left_out",
                                              "skipped", "ground", "backdrop",
                                              "occluded", "tuned", "render", "files", "sum"};
+    json_t *record = name ? json_deep_copy(json_object_get(done, name)) : NULL;
+    for (size_t i = 0; record && i < ORL_COUNT(elsewhere); i++)
+        json_object_del(record, elsewhere[i]);
+    if (record)
+        json_object_set_new(stages, name, record);
+}
+
+// The stages' records in order.
+static json_t *copy_stages(const json_t *plan, const json_t *done)
+{
     json_t *stages = json_object();
-    for (size_t k = 0; k < json_array_size(plan); k++) {
-        const char *name = json_string_value(json_array_get(plan, k));
-        json_t *record = name ? json_deep_copy(json_object_get(done, name)) : NULL;
-        for (size_t i = 0; record && i < ORL_COUNT(elsewhere); i++)
-            json_object_del(record, elsewhere[i]);
-        if (record)
-            json_object_set_new(stages, name, record);
-    }
+    for (size_t k = 0; k < json_array_size(plan); k++)
+        copy_stage(done, json_string_value(json_array_get(plan, k)), stages);
+    copy_stage(done, ORL_REFINE_RECORD, stages);
     return stages;
 }
 

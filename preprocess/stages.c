@@ -381,10 +381,20 @@ static enum orl_result invalidate(const struct orl_job *job, const bool *current
         return ORL_OK;
     enum orl_result result = orl_job_remove(job, "scene.json");
     ORL_THEN(result, orl_job_remove(job, ORL_SOFT_NAME)); // scene.json said how much of it pictures take
+    json_object_del(done_stages(job), ORL_REFINE_RECORD);
     if (result == ORL_OK && changed)
         orl_logf(job->log, ORL_LOG_INFO,
                  "photographs or settings have changed: some stages are done again");
     return result == ORL_OK ? orl_job_save_stages(job) : result;
+}
+
+// From now on programs count for another stage.
+static void reset_programs(struct orl_job *job)
+{
+    job->child_cpu_s = 0;
+    json_decref(job->programs);
+    job->programs = json_object();
+    job->child_peak_bytes = 0;
 }
 
 // `start_s`, `start_cpu_s`: of the stage.
@@ -424,10 +434,7 @@ static enum orl_result run_stage(struct orl_job *job, enum orl_stage_id id, json
 {
     json_t *files = json_object();
     double start = orl_time_s(), start_cpu = orl_cpu_time_s();
-    job->child_cpu_s = 0;
-    json_decref(job->programs);
-    job->programs = json_object();
-    job->child_peak_bytes = 0;
+    reset_programs(job);
     json_object_set_new(record, "key", json_string(job->keys[id]));
     enum orl_result result = files ? orl_job_need_disk(job, stages[id].name, disk_need(job, id))
                                    : ORL_ERR_MEMORY;
@@ -526,6 +533,16 @@ enum orl_result orl_stages_run_points(struct orl_job *job)
                     : redo_stage(job, (enum orl_stage_id)i, NULL, current));
     }
     return ORL_OK;
+}
+
+enum orl_result orl_stages_record_refine(struct orl_job *job, double start_s, double start_cpu_s)
+{
+    json_t *record = json_object();
+    reset_programs(job);
+    add_usage(job, start_s, start_cpu_s, record);
+    if (json_object_set_new(done_stages(job), ORL_REFINE_RECORD, record) != 0)
+        return orl_fail(job->log, ORL_ERR_MEMORY, "no memory for the record of refine");
+    return orl_job_save_stages(job);
 }
 
 // Texts that follow "oriel prepare" so that it does the same again in any folder.

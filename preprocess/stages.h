@@ -15,6 +15,9 @@ enum orl_result orl_stages_begin(struct orl_job *job, double wall_s) ORL_CHECK_R
 // Runs the stages after collect whose key or result is missing. Before a stage changes any file,
 // scene.json and the records of all dependent stages are removed.
 enum orl_result orl_stages_run(struct orl_job *job) ORL_CHECK_RESULT;
+// Records what refine took, which began at these times and is no stage: it reads the scene that all stages have made.
+#define ORL_REFINE_RECORD "refine"
+enum orl_result orl_stages_record_refine(struct orl_job *job, double start_s, double start_cpu_s) ORL_CHECK_RESULT;
 // Runs densify and all later stages in a folder whose undistorted photographs and sparse model came
 // from elsewhere.
 enum orl_result orl_stages_run_points(struct orl_job *job) ORL_CHECK_RESULT;

@@ -307,11 +307,18 @@ says "missing: densify"
 run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --refine
 [ -s "$scene/soft.ply" ] || fail "no soft splats"
 grep -q '"tuned"' "$scene/scene.json" || fail "what refine found is not kept"
+run 0 info "$scene"
+grep -Eq '^refine +[0-9.]+ s wall' "$work/out" || fail "info does not say what refine took"
 soft=$(md5sum <"$scene/soft.ply")
 run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --refine
 says "refine: done already"
+run 0 info "$scene"
+grep -Eq '^refine +[0-9.]+ s wall' "$work/out" || fail "what refine took is forgotten"
+grep -q '"tuned"' "$scene/scene.json" || fail "what refine found is forgotten"
 run 0 prepare "$work/p" --out "$scene" --test-list 1 --resume --radius-overlap 2
 [ -e "$scene/soft.ply" ] && fail "soft splats of other points stay"
+run 0 info "$scene"
+grep -q '^refine' "$work/out" && fail "the record of soft splats that are gone stays"
 "$oriel" prepare "$work/p" --out "$scene" --test-list 1 --resume --refine >/dev/null 2>&1 &
 while kill -0 $! 2>/dev/null && ! [ -e "$scene/refine.state" ]; do sleep 0.05; done
 kill -9 $!
