@@ -546,11 +546,11 @@ static enum orl_result climb(struct trim_search *s)
         ORL_TRY(climb_ladder(s));
     }
     s->most.psnr_db = s->most.ssim = INFINITY; // nothing is taken back
-    if (s->trim->complete && !within_budget(s))
+    if (!within_budget(s))
         return orl_fail(s->log, ORL_ERR_DATA,
-                        "%s: the least model takes %.2f MiB and %.1f ms a frame, which is more "
-                        "than is allowed", s->scene->dir, s->now->step.bytes / (1 << 20),
-                        s->first_ms * s->now->slower);
+                        "%s: the least model%s takes %.2f MiB and %.1f ms a frame, which is more "
+                        "than is allowed", s->scene->dir, s->trim->complete ? "" : " found before --budget ran out",
+                        s->now->step.bytes / (1 << 20), s->first_ms * s->now->slower);
     return ORL_OK;
 }
 
