@@ -249,6 +249,7 @@ def make(run):
                        "held_out": splits.count("test"),
                        "points": manifest.get("counts", {}).get("points"),
                        "prepare_s": sum(s.get("wall_s", 0) for s in manifest.get("stages", {}).values()) or None})
+    run.make_folder()
     for scene in scenes:
         rows += rows_of(run, scene, methods)
         if "part" not in run.options:

@@ -61,7 +61,7 @@ def make(run):
     found = [kinds[key] for key in kinds if isinstance(data, dict) and key in data]
     if not found:
         raise Failure(f"{run.inputs[0]}: neither of oriel bench --json nor of oriel trim --json")
-    run.out.mkdir(parents=True, exist_ok=True)
+    run.make_folder()
     found[0](data, run.out)
 
 

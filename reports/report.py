@@ -44,6 +44,14 @@ class Report:
         self.part = [int(n) for n in self.options.get("part", "1/1").split("/")]
         self.rows_seen = 0
 
+    def make_folder(self):
+        try:
+            self.out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise Failure(f"{self.out}: cannot make this folder: {error.strerror}") from error
+        if not os.access(self.out, os.W_OK):
+            raise Failure(f"{self.out}: cannot write into this folder")
+
     def list_of(self, name):
         return self.options[name].split(",") if name in self.options else []
 

@@ -845,7 +845,7 @@ def make(run):
     kept["scene"] = "synth" if source.synth else report.state_of(source.scene)
     kept["methods"], kept["more"] = methods, sorted(report.MORE_METHODS.intersection(run.list_of("method")))
     axes, rows = [], []
-    run.out.mkdir(parents=True, exist_ok=True)
+    run.make_folder()
     with tempfile.TemporaryDirectory() as work:
         run.work = pathlib.Path(work)
         for name in names:

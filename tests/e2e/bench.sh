@@ -77,4 +77,6 @@ for plot in passes memory; do
     tail -n1 plots/$plot.svg | grep -q '</svg>' || fail "no plot of $plot"
 done
 runs 2 "$oriel" plot trace.json --out plots
+runs 2 "$oriel" plot out.json --out trace.json
+grep -q '^oriel: error: trace.json: cannot make' stderr.txt || fail "does not say that --out is a file"
 exit $failed

@@ -93,6 +93,9 @@ runs 2 "${chart[@]}" --method points --peer nonsense
 runs 2 "${chart[@]}" --method points --peer ms=3
 runs 2 "${chart[@]}" --method points --peer best=perfect,ms=none
 runs 2 "$oriel" chart ws --quick
+runs 2 "$oriel" chart ws --quick --out ws/scene.json
+[ "$(cat stderr.txt)" = "oriel: error: ws/scene.json: cannot make this folder: File exists" ] ||
+    fail "measures before it says that --out is a file"
 runs 2 "$oriel" chart
 runs 2 "$oriel" chart ws ws --quick --out twice --method points
 grep -q 'two scenes are named ws' stderr.txt || fail "does not say that names are alike"

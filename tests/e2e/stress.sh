@@ -78,6 +78,9 @@ grep -q 'passers-by' stderr.txt || fail "does not list the axes"
 runs 2 "$oriel" stress ws --out real --method nonsense
 grep -q airieau stderr.txt || fail "does not list the methods"
 runs 2 "$oriel" stress ws
+runs 2 "$oriel" stress ws --out ws/scene.json
+[ "$(cat stderr.txt)" = "oriel: error: ws/scene.json: cannot make this folder: File exists" ] ||
+    fail "measures before it says that --out is a file"
 runs 2 "$oriel" stress --out real
 runs 2 "$oriel" stress nowhere --out none
 runs 0 "$oriel" stress --help
