@@ -8,7 +8,7 @@
 #define TRIM_OPTIONS(ROW) \
     ORL_TRIM_OPTIONS(ROW) \
     METHOD_OPTIONS(ROW) \
-    ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON")
+    ROW(json, "json", TEXT("FILE"), "write figures and steps as JSON; - for stdout")
 COMMAND_OPTIONS(trim_options, TRIM_OPTIONS)
 
 enum { MIB = 1 << 20 };
@@ -57,15 +57,16 @@ static enum orl_result run_trim(struct call *call)
     struct orl_trim trim = {0};
     enum orl_result result = command_scene(call, NULL);
     ORL_THEN(result, orl_choice_make(call->log, call->scene, ORL_SAMPLE_SRGB, o->method, &o->settings, &start));
+    const bool silent = report_on_stdout(o->json), steps = !call->common->quiet && !silent;
     start.params.soft = 0; // soft splats have seen the photographs that decide
     ORL_THEN(result, command_device(call));
     const struct orl_trim_params params = {ORL_TRIM_OPTIONS(ORL_OPTION_COPY) .start = &start,
-                                           .on_step = call->common->quiet ? NULL : print_step,
+                                           .on_step = steps ? print_step : NULL,
                                            .progress = call->progress};
-    if (result == ORL_OK && !call->common->quiet)
+    if (result == ORL_OK && steps)
         printf("%-36s %8s %8s %9s %9s\n", "step", "loss dB", "all dB", "MiB", "frame ms");
     ORL_THEN(result, orl_trim_run(call->gpu, call->scene, &params, &trim));
-    if (result == ORL_OK)
+    if (result == ORL_OK && !silent)
         print_summary(o, &trim);
     if (result == ORL_OK && o->json)
         result = report_write(call->log, o->json,

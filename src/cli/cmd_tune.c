@@ -12,7 +12,7 @@
     ROW(apply, "apply", FLAG, "keep the result in scene.json: render, eval and others use it") \
     ROW(fresh, "fresh", FLAG, "start from the method's values, not the scene's") \
     ORL_SEARCH_OPTIONS(ROW) \
-    ROW(json, "json", TEXT("FILE"), "write result and trials as JSON") \
+    ROW(json, "json", TEXT("FILE"), "write result and trials as JSON; - for stdout") \
     ROW(max_vram_bytes, "max-vram", MIB(1 << 20), "device memory to plan for")
 COMMAND_OPTIONS(tune_options, TUNE_OPTIONS)
 
@@ -27,14 +27,12 @@ static void print_trial(void *priv, const struct orl_trial *trial)
     fflush(stdout);
 }
 
-static enum orl_result report(const struct orl_log *log, const struct tune_options *o,
-                              const char *device, const struct orl_search *search)
+static void print_result(const struct tune_options *o, const struct orl_search *search)
 {
-    const struct orl_method *method = search->best.method;
     json_t *settings = orl_choice_settings(&search->best), *value;
     const char *key;
     printf("%s: %.3f dB, was %.3f; %zu photographs at 1/%d, each rendered without itself%s\n",
-           method->name, search->score.psnr_db, search->trials[0].psnr_db,
+           search->best.method->name, search->score.psnr_db, search->trials[0].psnr_db,
            search->validation.count, o->size_divide,
            search->complete ? "" : "; the budget ended the search");
     json_object_foreach(settings, key, value)
@@ -42,12 +40,19 @@ static enum orl_result report(const struct orl_log *log, const struct tune_optio
             printf("--set %s=%s\n", key, json_string_value(value));
         else
             printf("--set %s=%.6g\n", key, json_number_value(value));
+    json_decref(settings);
+}
+
+static enum orl_result report(const struct orl_log *log, const struct tune_options *o,
+                              const char *device, const struct orl_search *search)
+{
     enum orl_result result = ORL_OK;
+    if (!report_on_stdout(o->json))
+        print_result(o, search);
     if (o->json)
         result = report_write(log, o->json, orl_search_report(search, device));
     if (result == ORL_OK && o->apply)
-        result = orl_tuned_write(log, search->scene->dir, method->name, orl_search_record(search));
-    json_decref(settings);
+        result = orl_tuned_write(log, search->scene->dir, search->best.method->name, orl_search_record(search));
     return result;
 }
 
@@ -65,12 +70,15 @@ static enum orl_result run_tune(struct call *call)
         result = orl_choice_make(log, o->fresh ? NULL : call->scene, ORL_SAMPLE_SRGB,
                                  o->method ? o->method : orl_method_default(call->scene),
                                  &o->settings, &start);
+    if (result == ORL_OK && o->apply) // before the long work, too
+        result = orl_tuned_can_write(log, call->scene->dir);
     struct orl_renderer_params limits = {.max_vram_bytes = o->max_vram_bytes};
     ORL_THEN(result, command_renderer(call, &limits));
+    const bool trials = !call->common->quiet && !report_on_stdout(o->json);
     const struct orl_search_params params = {ORL_SEARCH_OPTIONS(ORL_OPTION_COPY)
-                                             .on_trial = call->common->quiet ? NULL : print_trial,
+                                             .on_trial = trials ? print_trial : NULL,
                                              .progress = call->progress};
-    if (result == ORL_OK && !call->common->quiet)
+    if (result == ORL_OK && trials)
         printf("%-18s %9s %9s %8s\n", "option", "value", "PSNR dB", "SSIM");
     ORL_THEN(result, orl_search_run(call->gpu, call->renderer, call->scene, &params, &start, &o->keys, &search));
     ORL_THEN(result, report(log, o, orl_gpu_caps(call->gpu)->renderer, &search));

@@ -77,13 +77,24 @@ enum orl_result orl_tuned_read(const struct orl_log *log, const char *path, cons
     return result;
 }
 
+enum orl_result orl_tuned_can_write(const struct orl_log *log, const char *dir)
+{
+    const char *path = ORL_PATH(dir, "scene.json");
+    struct orl_atomic_file file;
+    if (!orl_path_is_file(path))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: not there; settings can be kept in prepared scenes only", path);
+    ORL_TRY(orl_atomic_begin(log, path, &file));
+    orl_atomic_abort(&file);
+    return ORL_OK;
+}
+
 enum orl_result orl_tuned_write(const struct orl_log *log, const char *dir, const char *method,
                                 json_t *record)
 {
     json_t *root = NULL, *all;
     const char *path = ORL_PATH(dir, "scene.json");
-    enum orl_result result = orl_path_is_file(path) ? orl_json_read(log, path, &root)
-        : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: not there; settings can be kept in prepared scenes only", path);
+    enum orl_result result = orl_tuned_can_write(log, dir);
+    ORL_THEN(result, orl_json_read(log, path, &root));
     if (result == ORL_OK) {
         all = json_object_get(root, "tuned");
         if (!json_is_object(all)) {

@@ -34,6 +34,11 @@ runs 0 "$oriel" render small --at "${names[0]}" --quiet --out view.png
 # A budget instead of a tolerance.
 runs 0 "${trim[@]}" --out half --max-bytes 1.2 --quiet
 awk '$1 == "trimmed" { exit !($4 <= 1.2) }' stdout.txt || fail "more than the budget"
+runs 2 "${trim[@]}" --out hurried --max-bytes 0.001 --budget 0.001
+grep -q "before --budget ran out" stderr.txt || fail "does not say that the time was too short"
+[ -e hurried ] && fail "writes a scene that is larger than asked for"
+runs 0 "${trim[@]}" --out clean --budget 0.001 --json -
+jq -e .steps stdout.txt >/dev/null || fail "prints more than JSON"
 
 # What is wrong is said, and nothing is lost.
 runs 2 "${trim[@]}"

@@ -67,6 +67,20 @@ grep -q "fill: not an option that can be tuned" stderr.txt || fail "does not nam
 runs 2 "${tune[@]}" --method nonsense
 runs 0 "${tune[@]}" --budget 0.000001
 grep -q "budget" stdout.txt || fail "does not say that the budget ended it"
+runs 0 "${tune[@]}" --only splat_scale --json -
+jq -e .trials stdout.txt >/dev/null || fail "prints more than JSON"
+# What --apply cannot keep is not searched for.
+mv ws/scene.json kept.json
+runs 2 "${tune[@]}" --apply --only splat_scale
+grep -q "prepared scenes only" stderr.txt || fail "does not say which scenes keep settings"
+[ -s stdout.txt ] && fail "searches for what cannot be kept"
+mv kept.json ws/scene.json
+if [ "$(id -u)" -ne 0 ]; then
+    chmod a-w ws
+    runs 1 "${tune[@]}" --apply --only splat_scale
+    chmod u+w ws
+    [ -s stdout.txt ] && fail "searches in a scene that cannot be written"
+fi
 sed -i "s/\"train\"/\"test\"/" ws/scene.json
 runs 2 "${tune[@]}"
 grep -q "three are needed" stderr.txt || fail "does not say how many are needed"
