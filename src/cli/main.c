@@ -1,5 +1,7 @@
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/help.h"
@@ -32,11 +34,18 @@ static int run_command(int argc, const char *const *argv, bool jobs)
     return asked ? 0 : 2;
 }
 
+// What head has read enough of is whole.
+static bool reader_has_left(void)
+{
+    struct pollfd out = {.fd = STDOUT_FILENO};
+    return poll(&out, 1, 0) == 1 && (out.revents & POLLERR);
+}
+
 int main(int argc, char **argv)
 {
     int status = run_command(argc - 1, (const char *const *)argv + 1, false);
     // ferror remembers an earlier failed write, which fflush does not.
-    if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0) {
+    if ((fflush(stdout) != 0 || ferror(stdout)) && status == 0 && !reader_has_left()) {
         fprintf(stderr, "oriel: error: standard output: cannot write all of it\n");
         status = command_status(ORL_ERR_IO);
     }

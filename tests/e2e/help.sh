@@ -76,4 +76,7 @@ completes oriel render : render
 ! command -v fish >/dev/null || fish -n fish || fail "fish refuses its completions"
 ! command -v groff >/dev/null || [ -z "$("$oriel" help --as man | groff -man -ww -z 2>&1)" ] ||
     fail "groff warns of the man page"
+# Whoever reads may leave early.
+{ sleep 0.5; "$oriel" help --as markdown 2>stderr.txt; echo $? >status.txt; } | true
+[ "$(cat status.txt)" = 0 ] && [ ! -s stderr.txt ] || fail "a pipe that is closed early is an error"
 exit $failed
