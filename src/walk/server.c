@@ -515,6 +515,8 @@ static enum orl_result listen_there(struct server *server)
     snprintf(address, sizeof address, "http://%s:%d/%s%s", params->host, port,
              server->token[0] ? "?token=" : "", server->token);
     params->ready(params->priv, address);
+    if (strcmp(params->host, "0.0.0.0") == 0)
+        orl_logf(server->log, ORL_LOG_INFO, "on another machine, put this machine's name or address in place of 0.0.0.0");
     return ORL_OK;
 }
 
