@@ -66,10 +66,10 @@ static void print_methods(void)
 int main(void)
 {
     printf("# Options of rendering\n\n"
-           "`--set KEY=VALUE` of `oriel render`, `eval`, `bench` and `hdr` takes these. An option "
-           "that nothing reads with the\nmethod's choices is an error that names its readers. This "
-           "page is made from the option table\n(`include/oriel/option_list.h`) by the program "
-           "`options_page` of the tests; a test fails when the two differ.\n\n"
+           "`--set KEY=VALUE` of `oriel render`, `walk`, `hdr`, `eval`, `bench`, `tune` and `trim` takes these. An "
+           "option\nthat nothing reads with the method's choices is an error that names its readers. This page is made "
+           "from the option\ntable (`include/oriel/option_list.h`) by the program `options_page` of the tests; a test "
+           "fails when the two differ.\n\n"
            "## What each option means\n\n");
     print_options();
     printf("\n## What each method sets\n\nEmpty: the method does not read it.\n\n");
