@@ -67,6 +67,7 @@ light merged-series --merge series
 draw lit render exposures --radiance on --light 0002.jpg --at 0005.jpg
 # A sequence whose next time step is prepared while one is drawn.
 for method in li goldluecke; do
+    rm -rf "path-$method"
     "$oriel" render scenes/figures --path circle --frames 3 --size 160x120 --method $method --out "path-$method" --quiet
 done
 
