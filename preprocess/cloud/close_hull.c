@@ -13,7 +13,7 @@
 
 // Share of the points that may lie outside, each counted as often as other photographs agree on it:
 // outliers, which few agree on, and what stands beside the subject. Pictures taken at night exclude more. Masks that are
-// given count for more than points do: of a subject that shines, most points may be outliers.
+// given are more reliable than points: most points of a glossy subject may be outliers.
 static const double OUTSIDE_DARK = 0.3, OUTSIDE_GIVEN = 0.7;
 
 // --- colours of new points ---

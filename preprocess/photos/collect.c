@@ -91,7 +91,7 @@ static void drop_jpegs_of_raw(struct orl_job *job)
 }
 
 // A file given twice counts once. Two files of one name are an error, since COLMAP cannot tell them
-// apart. The names of their folders would, if they are equal below the folders that were given.
+// apart. Folders become part of a name only below the folder that was given.
 static enum orl_result drop_duplicates(struct orl_job *job)
 {
     if (job->source_count)

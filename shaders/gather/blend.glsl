@@ -98,7 +98,7 @@ vec4 blend(surface_point s, ranking r, out float varies, out float luma, out flo
         kept = k == 0 ? share : kept;
     }
     apart.y = max(apart.y, 1e-30);
-    // A photograph fades at its border, which says nothing of where what it shows may lie.
+    // A photograph fades at its border, but its depth is no less certain there.
     float fade = photo_border(photo_at(r.of[0].index), r.of[0].pixel);
     blur = guess_blur(s.p, r.of[0].penalty * fade, sqrt(apart.x / apart.y), first / apart.y);
     vec4 color = sum + kept * detail * (sum - kept * first * shown[0]);

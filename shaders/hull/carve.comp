@@ -10,7 +10,8 @@ layout(binding = 0) uniform sampler2D silhouette; // signed distance, pixels, po
 
 void main()
 {
-    ivec2 id = ivec2(gl_GlobalInvocationID.xy); // of one dimension, there would be more groups than some devices have
+    // In one direction alone there would be more work groups than a device must allow.
+    ivec2 id = ivec2(gl_GlobalInvocationID.xy);
     if (id.x >= side * side)
         return;
     int index = id.x + side * side * id.y;

@@ -34,7 +34,7 @@ static int run_command(int argc, const char *const *argv, bool jobs)
     return asked ? 0 : 2;
 }
 
-// What head has read enough of is whole.
+// Whether the reader of standard output, such as head, has closed the pipe: it has read what it wants.
 static bool reader_has_left(void)
 {
     struct pollfd out = {.fd = STDOUT_FILENO};

@@ -5,8 +5,8 @@
 #include "gpu/compress.h"
 #include "gpu/internal.h"
 
-// What the texels of a format take: blocks of side x side texels have so many bytes. zeros: the client format of what
-// clears it; 0: nothing can.
+// What the texels of a format take: blocks of side x side texels have so many bytes. zeros: the client format
+// in which it is cleared; 0: it cannot be cleared.
 struct texel_format {
     GLenum format;
     unsigned char bytes, side;

@@ -239,7 +239,7 @@ static enum orl_result read_eight(const struct orl_log *log, const char *path, i
     struct orl_picture_file file = {.log = log, .path = path, .channels = channels};
     ORL_TRY(read_file(&file, image));
     enum orl_result result = ORL_OK;
-    if (channels == 4)
+    if (channels == 4) // a mask, whose colours do not matter
         orl_profile_destroy(&file.profile);
     if (file.profile && image->type == ORL_PIXEL_U8)
         result = orl_profile_to_srgb(log, file.profile, image);
