@@ -69,7 +69,8 @@
     ROW(front_layer, "front_layer", FLOAT(0, 0, 0.1, "fraction of depth"), \
         .readers = "proxy=splats", ORL_TRIES(0, 0.005, 0.01, 0.02), .help = \
         "Splats no farther than this behind the nearest one are averaged with it. A splat that is farther from " \
-        "all surfaces around is covered by them. With 0 the nearest splat alone counts.") \
+        "all surfaces around is covered by them, and small groups of pixels are dropped as outliers. With 0 the " \
+        "nearest splat alone counts.") \
     ROW(splat_scale, "splat_scale", FLOAT(1, 0.01, 16, ""), \
         .readers = "proxy=splats", ORL_TRIES(0.7, 1, 1.4), .help = \
         "Multiplies the radii of the splats. Larger splats close more holes and fatten edges.") \

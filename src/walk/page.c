@@ -23,9 +23,9 @@ static const char *const shared_shaders[] = {
     "gather/guess_blur.glsl", "gather/hidden.glsl", "gather/penalty.glsl", "gather/projection.glsl",
     "gather/sample/srgb.glsl", "gather/stored.glsl", "guess/apply.glsl", "guess/cost.glsl", "guess/path.glsl",
     "guess/pick.glsl", "guess/planes.glsl", "proxy/holes.glsl", "proxy/octahedron.glsl", "proxy/point.glsl",
-    "proxy/push.glsl", "proxy/surfel.glsl", "shared/constants.h", "shared/penalty.h", "shared/pixel.glsl",
-    "shared/srgb.glsl", "soft/coarse.glsl", "soft/luma.glsl", "soft/mixed.glsl", "soft/opacity.glsl",
-    "soft/seen.glsl", "soft/shown.glsl", NULL};
+    "proxy/push.glsl", "proxy/support.glsl", "proxy/surfel.glsl", "shared/constants.h", "shared/penalty.h",
+    "shared/pixel.glsl", "shared/srgb.glsl", "soft/coarse.glsl", "soft/luma.glsl", "soft/mixed.glsl",
+    "soft/opacity.glsl", "soft/seen.glsl", "soft/shown.glsl", NULL};
 static const size_t FILE_MAX = (size_t)1 << 30;
 
 // --- the page from web/index.html ---

@@ -299,15 +299,24 @@ static void a_splat_seen_through_a_gap_is_covered(void **state)
             assert_float_equal(covered.depth[at(x, y)], 8, 1e-3);
 }
 
-// Nothing is there that could cover it.
-static void a_splat_alone_stays(void **state)
+// Before a wall, a pixel of one splat is an outlier, and nine side by side are a surface.
+static void a_small_surface_stays(void **state)
 {
     (void)state;
-    struct point p = seen_at(12.5, 30.5, 2, 0.001);
+    static struct point p[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int x = i % SIDE, y = i / SIDE;
+        bool before = (x == 30 && y == 12) || (x >= 12 && x < 15 && y >= 30 && y < 33);
+        p[i] = seen_at(x + 0.5, y + 0.5, before ? 2 : 4, before ? 0.001 : 0.08);
+    }
     struct orl_view view = front_view();
     static struct drawn d;
-    draw_with(&p, 1, &view, 0, 0.01f, &d);
-    assert_float_equal(d.depth[at(12, 30)], 2, 1e-5);
+    draw_with(p, ORL_COUNT(p), &view, 0, 0.01f, &d);
+    assert_float_equal(d.depth[at(30, 12)], 0, 0);
+    for (int i = 0; i < 9; i++)
+        assert_float_equal(d.depth[at(12 + i % 3, 30 + i / 3)], 2, 1e-5);
+    draw(p, ORL_COUNT(p), &view, &d);
+    assert_float_equal(d.depth[at(30, 12)], 2, 1e-5); // as the papers have it
 }
 
 // Pixels that nothing wins are worked out for some point all the same, here one in the plane of
@@ -373,7 +382,7 @@ int main(void)
         cmocka_unit_test(depths_between_splats_are_interpolated),
         cmocka_unit_test(occluded_points_are_replaced),
         cmocka_unit_test(a_splat_seen_through_a_gap_is_covered),
-        cmocka_unit_test(a_splat_alone_stays),
+        cmocka_unit_test(a_small_surface_stays),
         cmocka_unit_test(points_beside_the_eye_leave_no_mark),
         cmocka_unit_test(odd_sizes_lose_no_pixel),
     };

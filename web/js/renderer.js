@@ -28,7 +28,7 @@ function makePrograms(device, sources, manifest, planes)
         splats: device.program(sources, "points.vert", "splats.frag"),
         layer: device.program(sources, "points.vert", "layer.frag", {LAYER: 1}),
         pullFinest: screen("pull.frag", {FINEST: 1}), pull: screen("pull.frag"),
-        push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}),
+        push: screen("push.frag"), pushLast: screen("push.frag", {LAST: 1}), support: screen("support.frag"),
         seedDepth: screen("fill_seed_depth.frag"),
         fillPull: screen("fill_pull.frag"), fillPush: screen("fill_push.frag"), fillDepth: screen("fill_depth.frag"),
         depthUnpack: screen("depth_unpack.frag"),
@@ -70,6 +70,7 @@ class Frame {
         const surfels = this.pyramid(["RGBA32F", "RG32UI"], LEVELS_MAX - 1); // above level0
         this.pulled = [null, ...surfels.pulled];
         this.pushed = [null, ...surfels.pushed];
+        this.pushedLast = this.make(width, height, ["R32F", "RGBA8"]); // before outliers are dropped
         this.surface = this.make(width, height, ["R32F", "RGBA8"]);
         this.depth = this.make(width, height, ["R32F"]);
         this.fillDepth = this.pyramid(["RGBA32F"]); // floats: sums of a whole picture exceed what half floats hold
@@ -263,7 +264,12 @@ export class Renderer {
                         {...level0, ...fine(f.pulled[i]), ...coarse(above), level: i});
             above = f.pushed[i];
         }
-        device.pass(programs.pushLast, f.surface, {...level0, ...coarse(above)});
+        const drops = this.values.front_layer > 0;
+        device.pass(programs.pushLast, drops ? f.pushedLast : f.surface, {...level0, ...coarse(above)});
+        if (drops) {
+            const [pushed_depth, pushed_normal] = f.pushedLast.textures;
+            device.pass(programs.support, f.surface, {pushed_depth, pushed_normal});
+        }
     }
 
     // Gortler's pull and push from seeds: pyramid.pushed[0] is filled everywhere if anything is known.

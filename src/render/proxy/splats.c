@@ -38,10 +38,10 @@ static int pyramid_levels(int width, int height)
 
 size_t orl_splats_target_bytes(const struct cloud *cloud, int width, int height)
 {
-    // Bytes per pixel: three words of splats, 8 bytes of level 0, depth, a normal, and 24
+    // Bytes per pixel: three words of splats, 8 bytes of level 0, two depths, a normal, and 24
     // bytes of the coarser levels; four more words if there are several chunks.
     size_t chunks = cloud->chunk_count < 2 ? 0 : 16;
-    return (size_t)width * (size_t)height * (12 + 8 + 4 + 8 + 24 / 3 + chunks);
+    return (size_t)width * (size_t)height * (12 + 8 + 8 + 8 + 24 / 3 + chunks);
 }
 
 // Each level is half as large as the one before, rounded up. Loads outside read as empty.
@@ -69,6 +69,7 @@ static enum orl_result make_target(struct orl_gpu *gpu, const void *state, void 
         {"splat index", GL_R32UI, &target->splat_index},
         {"splat layer", GL_R32UI, &target->splat_layer},
         {"splats", GL_RG32UI, &target->splats},
+        {"pushed depth", GL_R32F, &target->pushed},
         {"splats of chunks", GL_RGBA32UI, &target->chunk_splats},
     };
     ORL_TRY(make_pyramid(gpu, target));
@@ -113,9 +114,9 @@ static void splat(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_b
         }
 }
 
-// Makes levels 0 and 1. Level 0 goes into the depth without normals, else into the target's splats.
+// Makes levels 0 and 1. Level 0 goes into `depth` without normals, else into the target's splats.
 static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat_block *block,
-                    bool normals, struct splat_target *t)
+                    const struct orl_tex *depth, bool normals, struct splat_target *t)
 {
     bool chunks = cloud->chunk_count > 1;
     struct orl_prog *prog = orl_prog_get(gpu, "proxy/splat_resolve.comp", NULL,
@@ -128,7 +129,7 @@ static void resolve(struct orl_gpu *gpu, const struct cloud *cloud, struct splat
         orl_gpu_dispatch(gpu, &(struct orl_dispatch){
             .prog = prog, ORL_PARAMS(*block), .textures = {&chunk->blocks->texels},
             .images = {&chunk->points->texels, t->splat_index, t->splat_layer,
-                       normals ? t->splats : t->surface.depth, t->surfel_a[1], t->surfel_b[1], t->chunk_splats},
+                       normals ? t->splats : depth, t->surfel_a[1], t->surfel_b[1], t->chunk_splats},
             .size = {t->surfel_a[1]->params.width, t->surfel_a[1]->params.height}});
     }
 }
@@ -151,10 +152,10 @@ static void pull(struct orl_gpu *gpu, struct pyramid_block *block,
         .size = {coarse->params.width, coarse->params.height}});
 }
 
-// Pushes into `level` from the coarser one. Level 0 is written as depth, and as the normal if it is
+// Pushes into `level` from the coarser one. Level 0 is written as `depth`, and as the normal if it is
 // asked for.
 static void push(struct orl_gpu *gpu, struct pyramid_block *block,
-                 struct splat_target *t, int level, bool normals)
+                 struct splat_target *t, int level, const struct orl_tex *depth, bool normals)
 {
     const char *defines = level ? NULL : normals ? "LAST\nNORMALS" : "LAST";
     const struct orl_tex *written = level ? t->surfel_a[level] : t->splats;
@@ -162,13 +163,23 @@ static void push(struct orl_gpu *gpu, struct pyramid_block *block,
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "proxy/push.comp", NULL, defines), ORL_PARAMS(*block),
         .images = {t->surfel_a[level + 1], t->surfel_b[level + 1], written,
-                   level ? t->surfel_b[level] : t->surface.depth, t->surface.normal},
+                   level ? t->surfel_b[level] : depth, t->surface.normal},
         // One invocation handles one corner of the coarse level's pixels.
         .size = {block->level_size[0] / 2 + 1, block->level_size[1] / 2 + 1}});
 }
 
-static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, float front_layer, bool normals,
-                      struct splat_target *t)
+static void drop_outliers(struct orl_gpu *gpu, struct pyramid_block *block, bool normals, struct splat_target *t)
+{
+    set_level(block, t->pushed, 0);
+    orl_gpu_dispatch(gpu, &(struct orl_dispatch){
+        .prog = orl_prog_get(gpu, "proxy/support.comp", NULL, normals ? "NORMALS" : NULL), ORL_PARAMS(*block),
+        .images = {t->pushed, t->surface.depth, t->surface.normal},
+        // One invocation handles 2x2 pixels.
+        .size = {(t->surface.width + 1) / 2, (t->surface.height + 1) / 2}});
+}
+
+static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, float front_layer,
+                      const struct orl_tex *depth, bool normals, struct splat_target *t)
 {
     struct pyramid_block block = {.front_layer = front_layer};
     const int levels = pyramid_levels(t->surface.width, t->surface.height);
@@ -176,7 +187,9 @@ static void pull_push(struct orl_gpu *gpu, const struct orl_view *view, float fr
     for (int i = 2; i < levels; i++)
         pull(gpu, &block, t, i);
     for (int i = levels - 2; i >= 0; i--)
-        push(gpu, &block, t, i, normals);
+        push(gpu, &block, t, i, depth, normals);
+    if (front_layer > 0)
+        drop_outliers(gpu, &block, normals, t);
 }
 
 static enum orl_result bring(const void *state, const struct orl_view *view)
@@ -190,12 +203,13 @@ static void draw(struct orl_gpu *gpu, const void *state, const struct orl_view *
 {
     struct splat_target *t = target;
     struct splat_block block = splat_params(state, view, params);
+    const struct orl_tex *depth = params->front_layer > 0 ? t->pushed : t->surface.depth;
     orl_pass_begin(gpu, "splat");
     splat(gpu, state, &block, t);
     orl_pass_end(gpu);
     orl_pass_begin(gpu, "pull-push");
-    resolve(gpu, state, &block, normals, t);
-    pull_push(gpu, view, params->front_layer, normals, t);
+    resolve(gpu, state, &block, depth, normals, t);
+    pull_push(gpu, view, params->front_layer, depth, normals, t);
     orl_pass_end(gpu);
 }
 

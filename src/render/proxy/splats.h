@@ -15,6 +15,7 @@ struct splat_target {
     struct orl_tex *splat_layer;  // R32UI: shaders/proxy/splat.glsl
     struct orl_tex *splats;       // RG32UI: level 0 of the pyramid (shaders/proxy/surfel.glsl),
                                   // used if normals are asked for
+    struct orl_tex *pushed;       // R32F: depth before outliers are dropped
     struct orl_tex *chunk_splats; // RGBA32UI: surfels of level 0; NULL: points are one chunk
     struct orl_tex *surfel_a[PYRAMID_LEVELS_MAX]; // levels from 1 on
     struct orl_tex *surfel_b[PYRAMID_LEVELS_MAX];
