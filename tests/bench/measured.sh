@@ -351,6 +351,8 @@ page_parts() {
 Held-out photographs by method `oriel`, whole pictures, with one rule left out: how much PSNR in dB and how many
 thousandths of SSIM that loses (below 0: gains), the mean over the scenes, how many crumbs of 10,000 pixels it adds, and
 the processor time of a frame as a share of that with the rule. [Options](../reference/options.md) says what each rule does.
+The last two rows leave out what stages of `oriel prepare` found: `--adapt none`, the `sharpness` of a scene for which
+another than the usual one proved better, and `--occluders none`, what single photographs show before the scene.
 How many photographs a pixel blends, `sharpness` and the cells of `guess_depths` were chosen on scenes of this table.
 Where `alignment` costs, the exposure of the held-out photographs is guessed badly.
 END

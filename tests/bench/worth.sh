@@ -1,23 +1,32 @@
 #!/usr/bin/env bash
-# What each rule of method oriel is worth: held-out photographs with the rule and without it.
+# What each rule of method oriel and what stages found is worth: held-out photographs with it and without it.
 #     tests/bench/worth.sh ORIEL SCENE...
 # Prints a table in Markdown:
-# what is lost without the rule, in dB of PSNR and thousandths of SSIM of whole pictures, the mean over
+# what is lost without it, in dB of PSNR and thousandths of SSIM of whole pictures, the mean over
 # the scenes, crumbs added, and the processor time of a frame without it as a share. Needs jq.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,7s/^# *//p' "$0"; exit 2; }
 oriel=$1
 shift
 without=(fill=color fill=depth guess_depths=0 guess_blur=0 antialias=off alignment=off
-    front_layer=0 outliers=0 photos_per_pixel=2 sampling=bilinear)
+    front_layer=0 outliers=0 photos_per_pixel=2 sampling=bilinear "--adapt none" "--occluders none")
+# What these options of oriel prepare leave out of a scene's manifest.
+declare -A found=(["--adapt none"]='del(.tuned)' ["--occluders none"]='del(.photographs[].occluded)')
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 # row CHANGE: one figure of each scene, tab-separated: PSNR, SSIM, crumbs, milliseconds of the processor.
 row() {
-    local scene
+    local scene at set left_out=${1:+${found[$1]:-}}
     for scene in "${scenes[@]}"; do
-        "$oriel" eval "$scene" --method oriel ${1:+--set "$1"} --quiet --json - </dev/null |
+        at=$scene set=(${1:+--set "$1"})
+        if [ "$left_out" ]; then
+            at=$work/scene set=()
+            rm -rf "$at"
+            cp -r "$scene/." "$at" # of a link, what it points to
+            jq "$left_out" "$scene/scene.json" >"$at/scene.json"
+        fi
+        "$oriel" eval "$at" --method oriel "${set[@]}" --quiet --json - </dev/null |
             jq -c 'if type == "array" then .[0] else . end | .mean'
     done | jq -sc '{change: $change, psnr: map(.psnr_db), ssim: map(.ssim), crumbs: map(.crumbs),
                     ms: map(.cpu_ms)}' --arg change "$1"
