@@ -194,6 +194,8 @@ END
     print_table "$work/accuracy.json" 'by_method(.mean.psnr_db; 2)'
     printf '**SSIM, whole pictures**\n\n'
     print_table "$work/accuracy.json" 'by_method(.mean.ssim; 3)'
+    printf '**Crumbs of 10,000 pixels**\n\n'
+    print_table "$work/accuracy.json" 'by_method(.mean.crumbs; 1)'
     printf '**PSNR in dB, pixels that geometry and a photograph cover**\n\n'
     print_table "$work/accuracy.json" 'by_method(.mean.psnr_covered_db; 2)'
     printf '**Share of these pixels, in %%**\n\n'
