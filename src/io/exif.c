@@ -57,6 +57,18 @@ static double get_positive(ExifData *data, ExifIfd ifd, ExifTag tag)
     return get_number(data, ifd, tag, &value) && value > 0 ? value : 0;
 }
 
+// 65535 in the 16-bit entry refers to the 32-bit ones, of which a camera writes the one that its setting stands for
+// (EXIF 2.3, 4.6.5): Canon, for example, the recommended exposure index.
+static double get_iso(ExifData *data)
+{
+    static const ExifTag wide[] = {EXIF_TAG_ISO_SPEED, EXIF_TAG_RECOMMENDED_EXPOSURE_INDEX,
+                                   EXIF_TAG_STANDARD_OUTPUT_SENSITIVITY};
+    double iso = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS), other = 0;
+    for (size_t i = 0; i < ORL_COUNT(wide) && !(other > 0); i++)
+        other = get_positive(data, EXIF_IFD_EXIF, wide[i]);
+    return other > 0 && (!(iso > 0) || iso >= 65535) ? other : iso;
+}
+
 void orl_exif_text(const void *bytes, size_t count, char *text, size_t size)
 {
     const uint8_t *from = bytes;
@@ -141,11 +153,7 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     if (!(exif->aperture > 0) &&
         get_number(data, EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE, &apex) && fabs(apex) < 32)
         exif->aperture = exp2(apex / 2);
-    exif->iso = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS);
-    // 65535 in the 16-bit entry refers to the 32-bit entry (EXIF 2.3, 4.6.5).
-    double wide = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED);
-    if (wide > 0 && (!(exif->iso > 0) || exif->iso >= 65535))
-        exif->iso = wide;
+    exif->iso = get_iso(data);
     if (!get_number(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_BIAS_VALUE, &exif->bias_ev))
         exif->bias_ev = 0;
     exif->focal_mm = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH);

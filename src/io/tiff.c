@@ -119,7 +119,10 @@ static double positive(TIFF *tiff, uint32_t tag)
 // Changes the current directory from the picture to its EXIF block, so it must come last.
 static void read_exif(TIFF *t, struct orl_exif *exif)
 {
+    static const uint32_t wide[] = {EXIFTAG_ISOSPEED, EXIFTAG_RECOMMENDEDEXPOSUREINDEX,
+                                    EXIFTAG_STANDARDOUTPUTSENSITIVITY}; // as in exif.c
     uint16_t orientation = 1, iso_count = 0, focal_35 = 0, *iso = NULL;
+    uint32_t other = 0;
     float bias = 0;
     toff_t offset = 0;
     copy_text(t, TIFFTAG_MAKE, exif->make, sizeof exif->make);
@@ -135,6 +138,9 @@ static void read_exif(TIFF *t, struct orl_exif *exif)
         exif->bias_ev = (double)bias;
     if (TIFFGetField(t, EXIFTAG_ISOSPEEDRATINGS, &iso_count, &iso) && iso_count && iso)
         exif->iso = iso[0];
+    for (size_t i = 0; i < ORL_COUNT(wide) && !(exif->iso > 0 && exif->iso < 65535) && !other; i++)
+        if (TIFFGetField(t, wide[i], &other) && other)
+            exif->iso = other;
     if (TIFFGetField(t, EXIFTAG_FOCALLENGTHIN35MMFILM, &focal_35))
         exif->focal_35mm = focal_35;
 }

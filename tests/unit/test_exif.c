@@ -119,6 +119,24 @@ static void exposure(void **state)
     assert_false(orl_exif_exposure_ev(&(struct orl_exif){.exposure_s = NAN}, &ev));
 }
 
+// Reads a file with this segment of fewer than 258 bytes, whose length is set here.
+static struct orl_exif with_block(const uint8_t *block, size_t block_size)
+{
+    struct orl_exif back = through_file(NULL);
+    uint8_t *plain, *with = malloc(65536);
+    size_t size;
+    assert_int_equal(orl_file_read(NULL, file, 32768, &plain, &size), ORL_OK);
+    memcpy(with, plain, 2);
+    memcpy(with + 2, block, block_size);
+    with[5] = (uint8_t)(block_size - 2);
+    memcpy(with + 2 + block_size, plain + 2, size - 2);
+    assert_int_equal(orl_file_write(NULL, file, with, size + block_size), ORL_OK);
+    assert_int_equal(orl_exif_read(NULL, file, &back), ORL_OK);
+    free(plain);
+    free(with);
+    return back;
+}
+
 // A block that was written by hand: big-endian, the time only as APEX value, 1/0 as
 // aperture, a text entry that points beyond the block.
 static void foreign_and_broken_blocks(void **state)
@@ -139,22 +157,33 @@ static void foreign_and_broken_blocks(void **state)
         0, 0, 0, 6, 0, 0, 0, 1,                           // at 80: 6/1 APEX, 1/64 s
         0, 0, 0, 1, 0, 0, 0, 0,                           // at 88: 1/0
     };
-    struct orl_exif back = through_file(NULL);
-    uint8_t *plain, *with = malloc(65536);
-    size_t size;
-    assert_int_equal(orl_file_read(NULL, file, 65536, &plain, &size), ORL_OK);
-    memcpy(with, plain, 2);
-    memcpy(with + 2, block, sizeof block);
-    with[5] = (uint8_t)(sizeof block - 2);
-    memcpy(with + 2 + sizeof block, plain + 2, size - 2);
-    assert_int_equal(orl_file_write(NULL, file, with, size + sizeof block), ORL_OK);
-    assert_int_equal(orl_exif_read(NULL, file, &back), ORL_OK);
+    struct orl_exif back = with_block(block, sizeof block);
     assert_string_equal(back.make, "");
     assert_int_equal(back.orientation, 6);
     assert_float_equal(back.exposure_s, 1 / 64., 1e-12);
     assert_float_equal(back.aperture, 0, 0);
-    free(plain);
-    free(with);
+}
+
+// ISO 102400 as Canon writes it.
+static void the_recommended_exposure_index_is_a_speed(void **state)
+{
+    (void)state;
+    static const uint8_t block[] = {
+        0xff, 0xe1, 0, 0, 'E', 'x', 'i', 'f', 0, 0,
+        'M', 'M', 0, 42, 0, 0, 0, 8,                      // TIFF head, first directory at 8
+        0, 1,
+        0x87, 0x69, 0, 4, 0, 0, 0, 1, 0, 0, 0, 26,        // EXIF directory at 26
+        0, 0, 0, 0,
+        0, 3,                                             // at 26: three entries
+        0x82, 0x9a, 0, 5, 0, 0, 0, 1, 0, 0, 0, 68,        // ExposureTime at 68
+        0x88, 0x27, 0, 3, 0, 0, 0, 1, 0xff, 0xff, 0, 0,   // PhotographicSensitivity: 65535
+        0x88, 0x32, 0, 4, 0, 0, 0, 1, 0, 1, 0x90, 0,      // RecommendedExposureIndex: 102400
+        0, 0, 0, 0,
+        0, 0, 0, 1, 0, 0, 0, 64,                          // at 68: 1/64 s
+    };
+    struct orl_exif back = with_block(block, sizeof block);
+    assert_float_equal(back.exposure_s, 1 / 64., 1e-12);
+    assert_float_equal(back.iso, 102400, 0);
 }
 
 // Real cameras' files, where the datasets are.
@@ -189,6 +218,7 @@ int main(void)
         cmocka_unit_test(silence_reads_as_zeroes),
         cmocka_unit_test(exposure),
         cmocka_unit_test(foreign_and_broken_blocks),
+        cmocka_unit_test(the_recommended_exposure_index_is_a_speed),
         cmocka_unit_test(photographs),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
