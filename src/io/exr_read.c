@@ -199,9 +199,13 @@ enum orl_result orl_exr_read_picture(struct orl_picture_file *file, struct orl_i
     enum orl_result result = start(&reader);
     file->info.bits = 32;
     file->info.unbounded = file->light = true;
+    bool gray = result == ORL_OK && find_channel(&reader, "Y") &&
+                !(find_channel(&reader, "R") && find_channel(&reader, "G") && find_channel(&reader, "B"));
+    // Luminance beside chroma is no grey picture; the chroma has half the size in each direction.
+    if (gray && (find_channel(&reader, "RY") || find_channel(&reader, "BY")))
+        result = orl_fail(file->log, ORL_ERR_UNSUPPORTED,
+                          "%s: holds luminance and chroma (Y, RY, BY); Oriel reads RGB", file->path);
     if (result == ORL_OK && image) {
-        bool gray = find_channel(&reader, "Y") && !(find_channel(&reader, "R") && find_channel(&reader, "G") &&
-                                                    find_channel(&reader, "B"));
         if (gray) {
             reader.names = luma;
             reader.count = 1;

@@ -217,6 +217,14 @@ static void floats_are_light_as_it_is(void **state)
     for (int i = 0; i < W * H * 3; i++)
         assert_true(image.f32[i] == rgb[i / 3 * 3]);
     orl_image_finish(&image);
+    // Of luminance and chroma, luminance alone would be a picture without colours.
+    struct orl_picture_info info;
+    exr.channel_count = 3;
+    strcpy(exr.channels[1].name, "RY");
+    strcpy(exr.channels[2].name, "BY");
+    assert_int_equal(orl_exr_write(NULL, path, &exr), ORL_OK);
+    assert_int_equal(orl_picture_inspect(NULL, path, &info), ORL_ERR_UNSUPPORTED);
+    assert_int_equal(orl_picture_read_linear(NULL, path, &image), ORL_ERR_UNSUPPORTED);
     orl_image_finish(&from);
 }
 
