@@ -17,6 +17,9 @@ struct orl_profile {
     bool grey; // one channel
 };
 
+// Little CMS takes samples beyond 1e22 for negative light: infinities, as the sun has in half floats, would become black.
+static const float SAMPLE_MAX = 1e20f;
+
 // Pictures of grey have three equal channels, the first of which counts.
 #define GREY_OF_3(type) ((type) | EXTRA_SH(2))
 
@@ -122,6 +125,8 @@ void orl_profile_to_linear(const struct orl_profile *profile, struct orl_image *
     size_t width = (size_t)image->width;
     for (size_t y = 0; y < (size_t)image->height; y++) {
         float *row = image->f32 + 3 * y * width;
+        for (size_t i = 0; i < 3 * width; i++)
+            row[i] = row[i] > SAMPLE_MAX ? SAMPLE_MAX : row[i]; // NaN stays
         cmsDoTransform(profile->to_linear, row, row, (cmsUInt32Number)width);
         for (size_t i = 0; i < 3 * width; i++)
             row[i] = row[i] > 0 ? row[i] : 0;
