@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "core/order.h"
 #include "preprocess/expose/align.h"
@@ -245,10 +246,10 @@ static enum orl_result fit_camera(struct exposing *e, int camera)
         }
     e->response_count++;
     json_array_append_new(e->response_list,
-                          json_pack("{s:s, s:i, s:f, s:f, s:o}", "camera", camera_name(source),
-                                    "points", (int)fit.points, "spread_ev", fit.spread_ev,
-                                    "spread_srgb_ev", fit.spread_srgb_ev, "linear",
-                                    curves_record(response)));
+                          json_pack("{s:o, s:i, s:f, s:f, s:o}", "camera",
+                                    orl_json_string(camera_name(source)), "points",
+                                    (int)fit.points, "spread_ev", fit.spread_ev, "spread_srgb_ev",
+                                    fit.spread_srgb_ev, "linear", curves_record(response)));
     return ORL_OK;
 }
 

@@ -5,7 +5,7 @@
 . "$2/tests/e2e/prepare_lib"
 monument 320x240 9 --exposures -1.5,0,1.5
 
-# Gives all photographs the EXIF of the first.
+# Gives all photographs the EXIF of the first, whose camera has a name that is not UTF-8.
 python3 - "$work"/p/*.jpg <<'PY' || fail "EXIF was not copied"
 import sys
 
@@ -21,7 +21,7 @@ for name in sys.argv[1:]:
     with open(name, "rb+") as file:
         data = file.read()
         start, end = exif(data)
-        first = first or data[start:end]
+        first = first or data[start:end].replace(b"synthetic", b"synth\xe9tic")
         file.seek(0)
         file.write(data[:start] + first + data[end:])
         file.truncate()
@@ -55,6 +55,12 @@ series() {
         "$work/s/scene.json" >"$work/jq" || fail "not $1 series: $(jq -c '[.photographs[].series]' "$work/s/scene.json")"
 }
 series 3
+
+# The scene has each response curve that its photographs name.
+run 0 "${prepare[@]}" --resume --exposures "$work/list" --response debevec
+jq -e '(.responses | length) == ([.photographs[].response // empty] | unique | length)' "$work/s/scene.json" \
+    >"$work/jq" || fail "response curves are missing"
+run 0 info "$work/s"
 
 # Pictures of more exposure that are not brighter, as where a camera meters by itself, are no bracket.
 sed -i 's/,-1.5$/,x/; s/,1.5$/,-1.5/; s/,0$/,1.5/; s/,x$/,0/' "$work/list"
