@@ -44,14 +44,26 @@ enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_expose
             sorted[known++] = photos[i].ev;
     qsort(sorted, known, sizeof *sorted, orl_order_doubles);
     double median = known ? sorted[(known - 1) / 2] : 0; // the lower one: a photograph has it
+    const double most = stays ? INFINITY : ORL_EXPOSURE_FAR_EV;
+    size_t first = 0;
+    while (first < known && median - sorted[first] > most)
+        first++;
+    while (known > first && sorted[known - 1] - median > most)
+        known--;
     *series_count = 1;
-    for (size_t i = 1; i < known; i++)
+    for (size_t i = first + 1; i < known; i++)
         *series_count += sorted[i] - sorted[i - 1] >= step_ev;
     for (size_t i = 0; i < count; i++) {
         struct orl_exposed *e = &photos[i];
         // Without a median, no exposure can be relative to it, so all count as unknown.
         e->known = e->known && known;
-        e->series = nearest_series(sorted, known, step_ev, e->known ? e->ev : median);
+        if (e->known && fabs(e->ev - median) > most) {
+            orl_logf(log, ORL_LOG_WARNING, "%s: its exposure is %.0f stops from the others': taken as unknown",
+                     e->name, fabs(e->ev - median));
+            e->known = false;
+            e->from = ORL_EXPOSURE_UNKNOWN;
+        }
+        e->series = nearest_series(sorted + first, known - first, step_ev, e->known ? e->ev : median);
         if (!stays)
             e->ev = e->known ? e->ev - median : 0;
     }

@@ -31,10 +31,13 @@ struct orl_exposed {
 #define ORL_EXPOSURE_STEP_EV 0.17
 // The same step for exposures that are estimated from the scene.
 #define ORL_ESTIMATED_STEP_EV 0.5
+// No scene has exposures so far from the middle one; scene.json holds gains of up to 2^19, as an exposure leaves its
+// photograph 2 EV, and each channel 1 EV more.
+#define ORL_EXPOSURE_FAR_EV 16
 
 // The median and the series come from known exposures of photographs that are not held out. Other
 // photographs join the nearest series. Exposures become relative to the median (unknown ones 0) unless they are
-// to stay.
+// to stay; those that are farther than ORL_EXPOSURE_FAR_EV from it become unknown, with a warning.
 enum orl_result orl_exposures_group(const struct orl_log *log, struct orl_exposed *photos,
                                     size_t count, double step_ev, bool stays,
                                     int *series_count) ORL_CHECK_RESULT;

@@ -66,6 +66,15 @@ static void groups_exposures(void **state)
     assert_int_equal(series, 1);
     assert_false(none[1].known);
     assert_float_equal(none[1].ev, 0, 0);
+    // A list of times in place of stops: 1/250 s and 30 s.
+    struct orl_exposed far[3] = {{.name = "a", .known = true, .ev = 0.004}, {.name = "b", .known = true, .ev = 0.004},
+                                 {.name = "c", .known = true, .ev = 30, .from = ORL_EXPOSURE_LIST}};
+    assert_int_equal(orl_exposures_group(NULL, far, 3, ORL_EXPOSURE_STEP_EV, false, &series), ORL_OK);
+    assert_int_equal(series, 1);
+    assert_true(far[0].known && far[1].known && !far[2].known);
+    assert_int_equal(far[2].from, ORL_EXPOSURE_UNKNOWN);
+    assert_float_equal(far[2].ev, 0, 0);
+    assert_int_equal(far[2].series, 0);
 }
 
 // A photograph of noise, so that its file is long enough to be cut.
