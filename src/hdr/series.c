@@ -104,7 +104,7 @@ static float linearise(const struct series *s, int channel, float color)
 // A series' sample of a pixel.
 struct estimate {
     float color[3]; // radiance
-    float clip;     // confidence with respect to clipping, less without a surface
+    float clip;     // confidence with respect to clipping, less without a surface; 0: nothing is painted
 };
 
 static void form_opinions(const struct orl_sensor *sensor, const struct series *s, float ev_above,
@@ -113,14 +113,17 @@ static void form_opinions(const struct orl_sensor *sensor, const struct series *
     size_t pixels = (size_t)picture->color.width * (size_t)picture->color.height;
     for (size_t i = 0; i < pixels; i++) {
         struct estimate *estimate = &estimates[i * stride];
+        const float *color = picture->color.f32 + 3 * i;
         float peak = 0, scale = exp2f(-s->ev);
         for (int c = 0; c < 3; c++) {
-            float x = linearise(s, c, picture->color.f32[3 * i + (size_t)c]);
+            float x = linearise(s, c, color[c]);
             estimate->color[c] = scale * x;
             peak = fmaxf(peak, x);
         }
-        estimate->clip = orl_clip_trust(sensor, peak, ev_above) *
-                        (picture->coverage.f32[i] > 0.5f ? 1 : UNCOVERED_SHARE);
+        bool covered = picture->coverage.f32[i] > 0.5f;
+        bool painted = covered || color[0] > 0 || color[1] > 0 || color[2] > 0;
+        estimate->clip = !painted ? 0
+                         : orl_clip_trust(sensor, peak, ev_above) * (covered ? 1 : UNCOVERED_SHARE);
     }
 }
 

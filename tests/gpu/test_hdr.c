@@ -745,6 +745,34 @@ static void panoramas_show_what_is_there(void **state)
     teardown(&f);
 }
 
+// The photographs look at a wall. What is behind them takes its colour.
+static void panoramas_are_filled_where_none_looks(void **state)
+{
+    (void)state;
+    enum { W = 64, H = 32 };
+    for (int merge = 0; merge < ORL_HDR_MERGE_COUNT; merge++) {
+        struct fixture f;
+        struct orl_hdr *hdr;
+        struct orl_frame frame;
+        setup_wall(&f);
+        add_photo(&f, look(0, 0), 0, wall_light);
+        add_photo(&f, look(0.1, 0), -2, wall_light);
+        struct orl_hdr_params params = params_of((enum orl_hdr_merge)merge, "oriel");
+        params.render.fill = ORL_FILL_NONE;
+        const struct orl_panorama p = {.forward = {0, 0, 1}, .up = {0, -1, 0}, .width = W, .height = H};
+        assert_int_equal(orl_hdr_create(gpu, &f.scene, &params, &hdr), ORL_OK);
+        assert_int_equal(orl_hdr_draw_panorama(hdr, &p, NULL, &frame), ORL_OK);
+        const size_t middle = H / 2 * W + W / 2, behind = H / 2 * W;
+        assert_color(&frame, middle, WALL, 0.03);
+        assert_true(frame.confidence.f32[middle] > 0.5f);
+        assert_color(&frame, behind, WALL, 0.1);
+        assert_float_equal(frame.confidence.f32[behind], 0, 0);
+        orl_frame_finish(&frame);
+        orl_hdr_destroy(&hdr);
+        teardown(&f);
+    }
+}
+
 // Both merges see the same room, and finer samples do not change it.
 static void merges_agree(void **state)
 {
@@ -801,6 +829,7 @@ int main(void)
         cmocka_unit_test(response_and_vignetting_are_undone),
         cmocka_unit_test(linear_files_keep_their_range),
         cmocka_unit_test(panoramas_show_what_is_there),
+        cmocka_unit_test(panoramas_are_filled_where_none_looks),
         cmocka_unit_test(merges_agree),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
