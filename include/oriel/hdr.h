@@ -53,7 +53,7 @@ enum orl_result orl_panorama_place(const struct orl_log *log, const struct orl_s
 // middle, latitude +pi/2 (up) at the top: OpenEXR's latitude-longitude map. frame->depth is
 // the distance to the point; normals are in the frame of x right, y down, z forward, as if
 // looking at the centre. Directions that no photograph sees take their neighbours' colour,
-// with coverage and confidence 0.
+// with coverage and confidence 0; merged by series, what a view has filled in stays.
 enum orl_result orl_hdr_draw_panorama(struct orl_hdr *hdr, const struct orl_panorama *panorama,
                                       const bool *skip, struct orl_frame *frame) ORL_CHECK_RESULT;
 // The panorama's position and orientation as a view of its centre, with a placeholder camera of its
