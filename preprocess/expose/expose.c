@@ -322,6 +322,8 @@ static enum orl_result heed_pictures(struct exposing *e, bool *again)
              *again ? "EXIF tells" : "the list of --exposures tells",
              *again ? "; they are estimated from the pictures. --exposures FILE takes a list" : "");
     for (size_t i = 0; *again && i < e->count; i++) {
+        if (e->exposed[i].from != ORL_EXPOSURE_EXIF)
+            continue;
         e->exposed[i].known = false;
         e->exposed[i].from = ORL_EXPOSURE_UNKNOWN;
     }

@@ -41,6 +41,14 @@ evs() {
 }
 evs scene
 
+# A list of one photograph, which says of it what EXIF does. It is kept while the exposures of the others are estimated.
+one=("$work"/p/*.jpg)
+echo "$(basename "${one[0]}"),0.00141421,8,100" >"$work/one"
+run 0 "${prepare[@]}" --resume --exposures "$work/one"
+says "the exposures that EXIF tells $lies"
+jq -e '[.photographs[].exposure_from] | .[0] == "list" and (.[1:] | all(. == "scene"))' "$work/s/scene.json" \
+    >"$work/jq" || fail "the listed exposure is not kept: $(jq -c '[.photographs[].exposure_from]' "$work/s/scene.json")"
+
 set -- -1.5 0 1.5
 for photo in "$work"/p/*.jpg; do
     echo "$(basename "$photo"),$1"
