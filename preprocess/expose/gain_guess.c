@@ -7,8 +7,8 @@
 // Exposures need only be better: a camera measured them, and a few photographs whose processing
 // differs tell little against that.
 static const double MUST_GAIN = 0.8;
-// The same for metering against the best other guess. It asks for more, because the light of a
-// rendering is not quite that of the photograph, and a camera set by hand does not follow it.
+// The same for metering against the best other guess or, if that is less, what any guess must reach. It asks for more,
+// because the light of a rendering is not quite that of the photograph, and a camera set by hand does not follow it.
 static const double METERING_MUST_GAIN = 2.0 / 3;
 
 // What all guesses are made from.
