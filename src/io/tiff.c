@@ -158,11 +158,13 @@ static float stored(const struct tiff_job *job, const uint8_t *sample)
     return job->bits == 32 ? value : (float)wide / (job->bits == 16 ? 65535 : 255);
 }
 
-// What has been multiplied by alpha is divided by it.
+// What has been multiplied by alpha is divided by it. Light may exceed white.
 static float sample(const struct tiff_job *job, const uint8_t *from, float alpha)
 {
-    float value = stored(job, from);
-    return alpha >= 1 ? value : alpha > 0 ? fminf(value / alpha, 1) : 0;
+    float value = stored(job, from), whole = alpha > 0 ? value / alpha : 0;
+    if (alpha >= 1)
+        return value;
+    return whole > 1 && job->format != SAMPLEFORMAT_IEEEFP ? 1 : whole;
 }
 
 // Copies `count` pixels from a buffer into a row of the image. plane -1: samples are interleaved.

@@ -629,6 +629,22 @@ static void tiff_alpha_is_taken_out(void **state)
             assert_float_equal(orl_srgb_encode(image.f32[i]), 100.0 / 255, 1e-2);
         orl_image_finish(&image);
     }
+    // Light beyond white stays.
+    const struct variety floats = {32, 4, PLANARCONFIG_CONTIG, COMPRESSION_NONE, 0, "w"};
+    const uint16_t multiplied = EXTRASAMPLE_ASSOCALPHA;
+    static float light[W * 4];
+    for (int i = 0; i < W; i++)
+        memcpy(light + 4 * i, (float[]){1, 2, 0.125f, 0.5f}, 4 * sizeof *light);
+    TIFF *t = begin_tiff(in_dir("a.tif"), &floats, PHOTOMETRIC_RGB);
+    TIFFSetField(t, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+    TIFFSetField(t, TIFFTAG_EXTRASAMPLES, 1, &multiplied);
+    for (uint32_t y = 0; y < H; y++)
+        assert_int_equal(TIFFWriteScanline(t, light, y, 0), 1);
+    TIFFClose(t);
+    struct orl_image image = read_linear(in_dir("a.tif"), 32, true);
+    for (int i = 0; i < W * H * 3; i++)
+        assert_true(image.f32[i] == 2 * light[i / 3 % W * 4 + i % 3]);
+    orl_image_finish(&image);
 }
 
 // Cameras that are set to Adobe RGB say so in EXIF (DCF 2.0), without a profile.
