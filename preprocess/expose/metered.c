@@ -21,8 +21,7 @@ enum orl_result orl_photo_metered(const struct orl_log *log, const char *dir, st
             float rgb[3];
             float dimmed = orl_illumination(photo->vignette, &photo->view.camera, x + 0.5, y + 0.5);
             for (int c = 0; c < 3; c++)
-                rgb[c] = orl_light_aligned(gain[c] / (dimmed > 0.1f ? dimmed : 0.1f),
-                                           orl_srgb_decode((float)v[c] / 255));
+                rgb[c] = orl_light_aligned(gain[c] / dimmed, orl_srgb_decode((float)v[c] / 255));
             orl_meter_add(&meter, rgb, x + 0.5, y + 0.5, image.width, image.height);
         }
     orl_image_finish(&image);

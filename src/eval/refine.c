@@ -104,7 +104,7 @@ static enum orl_result read_photo(const struct refine *r, size_t photo, struct o
     ORL_THEN(result, orl_image_init(r->log, &to->color, width, height, 3, ORL_PIXEL_F32));
     for (int y = 0; result == ORL_OK && y < height; y++)
         for (int x = 0; x < width; x++) {
-            float light = fmaxf(orl_illumination(from->vignette, &read.view.camera, x + 0.5, y + 0.5), 0.1f);
+            float light = orl_illumination(from->vignette, &read.view.camera, x + 0.5, y + 0.5);
             size_t at = 3 * ((size_t)y * (size_t)width + (size_t)x);
             for (size_t c = 0; c < 3; c++) {
                 float value = orl_srgb_decode((float)read.picture.u8[at + c] / 255);

@@ -76,7 +76,7 @@ static void align(const struct orl_photo *photo, const double pixel[2], double r
 {
     float light = orl_illumination(photo->vignette, &photo->view.camera, pixel[0], pixel[1]);
     for (int k = 0; k < 3; k++)
-        rgb[k] = (double)orl_light_aligned(photo->gain[k] / fmaxf(light, 0.1f), (float)rgb[k]);
+        rgb[k] = (double)orl_light_aligned(photo->gain[k] / light, (float)rgb[k]);
 }
 
 // A photograph's colour at a pixel, linear light, interpolated between pixels.

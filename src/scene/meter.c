@@ -21,8 +21,8 @@ float orl_illumination(const float vignette[3], const struct orl_camera *camera,
     double half2 = 0.25 * ((double)camera->width * camera->width +
                            (double)camera->height * camera->height);
     double r2 = (dx * dx + dy * dy) / half2;
-    return (float)(1 + r2 * ((double)vignette[0] +
-                             r2 * ((double)vignette[1] + r2 * (double)vignette[2])));
+    double light = 1 + r2 * ((double)vignette[0] + r2 * ((double)vignette[1] + r2 * (double)vignette[2]));
+    return fmaxf((float)light, 0.1f);
 }
 
 void orl_meter_add(struct orl_meter *meter, const float rgb[3], double x, double y, int width,

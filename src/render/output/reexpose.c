@@ -96,7 +96,7 @@ void orl_photo_unalign(const struct orl_photo *photo, struct orl_image *color)
     metered_gain(photo, color, gain);
     for (int y = 0; y < color->height; y++)
         for (int x = 0; x < color->width; x++) {
-            float dimmed = fmaxf(illumination(photo, color, x, y), 0.1f);
+            float dimmed = illumination(photo, color, x, y);
             float *pixel =
                 color->f32 + 3 * ((size_t)y * (size_t)color->width + (size_t)x);
             for (int c = 0; c < 3; c++)
