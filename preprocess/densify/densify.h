@@ -10,7 +10,7 @@
 #include "scene/colmap.h"
 
 // Raised when the same photographs and settings give different maps.
-enum { ORL_DENSIFY_VERSION = 8 };
+enum { ORL_DENSIFY_VERSION = 9 };
 
 // One unit of work, which may run beside others, on other machines too: one pass over some of the
 // photographs.

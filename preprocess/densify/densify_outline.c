@@ -46,14 +46,17 @@ static bool is_farther(const struct outline *o, size_t at, float inverse)
     return there > 0 ? there < inverse * (1 - STEP) : o->open[at];
 }
 
-// The pixel dx, dy from `at`, or the nearest one to it of the picture.
-static size_t beside(const struct outline *o, size_t at, int dx, int dy)
+// The pixel dx, dy from `at`. False outside the picture, of which nothing is known: a pixel at its border
+// in place of one beyond it would lie off a slanting plane.
+static bool find_beside(const struct outline *o, size_t at, int dx, int dy, size_t *there)
 {
     int width = o->luma->width, height = o->luma->height;
     int x = (int)(at % (size_t)width) + dx, y = (int)(at / (size_t)width) + dy;
-    x = x < 0 ? 0 : x >= width ? width - 1 : x;
-    y = y < 0 ? 0 : y >= height ? height - 1 : y;
-    return (size_t)y * (size_t)width + (size_t)x;
+    *there = at;
+    if (x < 0 || y < 0 || x >= width || y >= height)
+        return false;
+    *there = (size_t)y * (size_t)width + (size_t)x;
+    return true;
 }
 
 static bool is_inside(const struct outline *o, size_t at)
@@ -64,7 +67,8 @@ static bool is_inside(const struct outline *o, size_t at)
         {2, 0}, {2, 2}, {0, 2}, {-2, 2}, {-2, 0}, {-2, -2}, {0, -2}, {2, -2}};
     for (int k = 0; k < PROBES; k++) {
         int dx = probes[k][0], dy = probes[k][1];
-        if (is_farther(o, beside(o, at, dx, dy), expected(o, at, dx, dy)))
+        size_t there;
+        if (find_beside(o, at, dx, dy, &there) && is_farther(o, there, expected(o, at, dx, dy)))
             return false;
     }
     return true;
@@ -90,7 +94,9 @@ static bool is_beyond_outline(const struct outline *o, size_t at)
     int own = o->luma->u8[at];
     for (int dy = -WINDOW; dy <= WINDOW; dy++)
         for (int dx = -WINDOW; dx <= WINDOW; dx++) {
-            size_t there = beside(o, at, dx, dy);
+            size_t there;
+            if (!find_beside(o, at, dx, dy, &there))
+                continue;
             float inverse = expected(o, at, dx, dy), luma = (float)o->luma->u8[there] / 255;
             float alike = o->alike[abs(o->luma->u8[there] - own)];
             if (is_farther(o, there, inverse))

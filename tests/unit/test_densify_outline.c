@@ -151,11 +151,8 @@ static void small_holes_show_no_background(void **state)
     assert_int_equal(plate, PLATE - 9);
 }
 
-// A floor that recedes is no step, however dark its far part is.
-static void slanting_surfaces_have_no_outline(void **state)
+static void set_floor(struct fixture *f)
 {
-    struct fixture *f = *state;
-    int kept = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         // 1/z = 0.05 + 0.005 y: the plane (0, 0.005 fy, 0.05 + 0.005 cy) X = 1
         double n[2] = {0.005 * f->camera.fy, 0.05 + 0.005 * f->camera.cy};
@@ -165,10 +162,31 @@ static void slanting_surfaces_have_no_outline(void **state)
         f->maps.normal.f32[3 * i + 2] = (float)(-n[1] / length);
         f->luma.u8[i] = i / SIDE < SIDE / 2 ? DARK : BRIGHT;
     }
+}
+
+static void assert_all_kept(struct fixture *f)
+{
+    int kept = 0;
     assert_int_equal(orl_densify_trim_outlines(NULL, &f->camera, &f->luma, &f->maps), ORL_OK);
     for (int i = 0; i < SIDE * SIDE; i++)
         kept += f->maps.depth.f32[i] > 0;
     assert_int_equal(kept, SIDE * SIDE);
+}
+
+// A floor that recedes is no step, however dark its far part is.
+static void slanting_surfaces_have_no_outline(void **state)
+{
+    set_floor(*state);
+    assert_all_kept(*state);
+}
+
+// Nor is the picture's border one, where the floor would go on and be nearer.
+static void slanting_surfaces_have_no_outline_at_borders(void **state)
+{
+    struct fixture *f = *state;
+    set_floor(f);
+    memset(f->luma.u8 + (SIDE - 2) * SIDE, DARK, 2 * SIDE);
+    assert_all_kept(f);
 }
 
 // Where a floor, dark, ends at a bright wall, what is farther than the last of the floor is floor.
@@ -176,7 +194,6 @@ static void floors_end_at_walls(void **state)
 {
     struct fixture *f = *state;
     enum { WALL = 48 };
-    int kept = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         // 1/z = 0.13 + 0.0025 y up to 0.25
         double slope = i / SIDE < WALL ? 0.0025 : 0, here = 0.25 + slope * (i / SIDE + 0.5 - WALL);
@@ -187,10 +204,7 @@ static void floors_end_at_walls(void **state)
         f->maps.normal.f32[3 * i + 2] = (float)(-n[1] / length);
         f->luma.u8[i] = i / SIDE < WALL ? DARK : BRIGHT;
     }
-    assert_int_equal(orl_densify_trim_outlines(NULL, &f->camera, &f->luma, &f->maps), ORL_OK);
-    for (int i = 0; i < SIDE * SIDE; i++)
-        kept += f->maps.depth.f32[i] > 0;
-    assert_int_equal(kept, SIDE * SIDE);
+    assert_all_kept(f);
 }
 
 int main(void)
@@ -206,6 +220,8 @@ int main(void)
                                         tear_down),
         cmocka_unit_test_setup_teardown(small_holes_show_no_background, set_up, tear_down),
         cmocka_unit_test_setup_teardown(slanting_surfaces_have_no_outline, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(slanting_surfaces_have_no_outline_at_borders, set_up,
+                                        tear_down),
     };
     return cmocka_run_group_tests_name("outline", tests, NULL, NULL);
 }
