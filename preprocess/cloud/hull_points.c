@@ -222,7 +222,8 @@ static void smooth_line(float *at, size_t step, int side)
                                 6 * line[i + 2]) / 16;
 }
 
-// The surface, smoothed over the steps of the voxels.
+// The surface, smoothed over the steps of the voxels. No triangles: what is left is thinner than three
+// voxels everywhere, and smoothing takes it.
 static enum orl_result make_surface(const struct orl_log *log, const struct orl_hull_points *hull,
                                     struct orl_mesh *mesh)
 {
@@ -238,9 +239,12 @@ static enum orl_result make_surface(const struct orl_log *log, const struct orl_
         smooth_line(field + a % side + side * side * (a / side), side, cube->side);
     for (size_t a = 0; a < side * side; a++)
         smooth_line(field + a, side * side, cube->side);
-    for (size_t i = 0; i < count; i++)
+    bool any = false;
+    for (size_t i = 0; i < count; i++) {
         field[i] = 0.5f - field[i];
-    enum orl_result result = orl_hull_field_mesh(log, cube, field, 0, mesh);
+        any = any || field[i] < 0;
+    }
+    enum orl_result result = any ? orl_hull_field_mesh(log, cube, field, 0, mesh) : ORL_OK;
     free(field);
     return result;
 }
@@ -360,7 +364,8 @@ enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_p
     if (result != ORL_OK || !any)
         return result;
     result = make_surface(log, hull, &mesh);
-    ORL_THEN(result, replace_points(log, hull, &mesh, points, added));
+    if (result == ORL_OK && mesh.triangle_count)
+        result = replace_points(log, hull, &mesh, points, added);
     orl_mesh_finish(&mesh);
     return result;
 }

@@ -223,6 +223,22 @@ static void points_that_silhouettes_exclude_make_no_hull(void **state)
     assert_int_equal(f->points.count, before);
 }
 
+// Two beads of a pixel and a half: voxels of them are left, but no surface once these are smoothed.
+static void what_is_thinner_than_the_voxels_stays_as_it_is(void **state)
+{
+    struct fixture *f = *state;
+    f->points.count = 0;
+    for (int side = -1; side <= 1; side += 2)
+        add_point(&f->points, 0.69 * side, 0, 0);
+    for (int i = 0; i < PHOTOS; i++) {
+        memset(f->silhouettes[i].mask.u8, 0, SIDE * SIDE);
+        add_ball(&f->silhouettes[i], 0.69, 0, 0, 0.05);
+        add_ball(&f->silhouettes[i], -0.69, 0, 0, 0.05);
+    }
+    assert_int_equal(close_points(f), 2);
+    assert_int_equal(f->points.count, 2);
+}
+
 static void voxels_fit_in_memory(void **state)
 {
     const struct fixture *f = *state;
@@ -242,6 +258,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(parts_without_points_are_left_out, set_up, tear_down),
         cmocka_unit_test_setup_teardown(parts_with_points_are_closed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(voxels_fit_in_memory, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_thinner_than_the_voxels_stays_as_it_is, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(points_that_silhouettes_exclude_make_no_hull, set_up,
                                         tear_down),
     };
