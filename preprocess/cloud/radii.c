@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "preprocess/job/job.h"
 #include "scene/manifest.h"
+#include "scene/nearest_points.h"
 #include "scene/point_lod.h"
 #include "scene/point_stream.h"
 
@@ -91,12 +92,14 @@ enum orl_result orl_stage_radii(struct orl_job *job, json_t *record)
     struct viewers viewers = {0};
     struct orl_point_stream *stream = NULL;
     const char *in = ORL_PATH(job->dir, ".oriel/fused.ply");
+    if (most > ORL_SEARCH_POINTS_MAX)
+        most = ORL_SEARCH_POINTS_MAX; // whatever memory there is
     enum orl_result result = orl_point_stream_open(job->log, in, &stream, &fused);
     orl_point_stream_close(&stream);
     ORL_THEN(result, find_viewers(job, &viewers));
     if (result == ORL_OK && fused > most)
-        orl_logf(job->log, ORL_LOG_INFO, "radii: %llu points are more than the %llu that fit in "
-                 "memory; dividing them on disk", (unsigned long long)fused,
+        orl_logf(job->log, ORL_LOG_INFO, "radii: %llu points are more than the %llu that are "
+                 "held in memory; dividing them on disk", (unsigned long long)fused,
                  (unsigned long long)most);
     ORL_THEN(result, fused > most ? write_levels(job, &params, &viewers, in, &left)
                                   : write_whole(job, &params, &viewers, in, &left));

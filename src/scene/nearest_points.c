@@ -1,7 +1,6 @@
 #include "scene/nearest_points.h"
 
 #include <flann/flann.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -140,9 +139,9 @@ enum orl_result orl_points_nearest(const struct orl_log *log, const struct orl_p
                                    const struct orl_points *queries, int *found, float *dist2)
 {
     enum { CHUNK = 1 << 15 };
-    if (points->count > INT_MAX / 64 || queries->count > INT_MAX / 64)
+    if (points->count > ORL_SEARCH_POINTS_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are more than FLANN can index",
-                        points->count > queries->count ? points->count : queries->count);
+                        points->count);
     struct point_search search;
     enum orl_result result = orl_point_search_open(log, points, 1, &search);
     for (size_t first = 0; result == ORL_OK && first < queries->count; first += CHUNK) {

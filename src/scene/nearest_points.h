@@ -4,8 +4,12 @@
 
 #include "oriel/points.h"
 
+// FLANN counts points, and the bytes of its tree, in an int.
+enum { ORL_SEARCH_POINTS_MAX = 1 << 27 };
+
 // Finds for each of `queries` its nearest point: found[i] is an index into `points`, dist2[i] the
-// square of the distance. All must be usable (orl_point_usable), and `points` not empty.
+// square of the distance. All must be usable (orl_point_usable), and `points` not empty, and no more than
+// ORL_SEARCH_POINTS_MAX; there may be any number of queries.
 enum orl_result orl_points_nearest(const struct orl_log *log, const struct orl_points *points,
                                    const struct orl_points *queries, int *found,
                                    float *dist2) ORL_CHECK_RESULT;
@@ -31,7 +35,7 @@ struct point_search {
     struct few_alike few; // what is searched among
     void *index;          // FLANN's, owned
 };
-// Of at most INT_MAX / 64 points, which must stay as they are. The caller closes the search, on failure too.
+// Of at most ORL_SEARCH_POINTS_MAX points, which must stay as they are. The caller closes the search, on failure too.
 enum orl_result orl_point_search_open(const struct orl_log *log, const struct orl_points *points, int neighbours,
                                       struct point_search *search) ORL_CHECK_RESULT;
 void orl_point_search_close(struct point_search *search);

@@ -1,6 +1,5 @@
 #include "scene/point_radii.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -164,7 +163,7 @@ enum orl_result orl_points_set_some_radii(const struct orl_log *log,
     ORL_REQUIRE(log, params->overlap > 0 && params->overlap <= 8);
     if (own == 0)
         return ORL_OK;
-    if (points->count > INT_MAX / 64)
+    if (points->count > ORL_SEARCH_POINTS_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "%zu points are more than FLANN can index",
                         points->count);
     size_t others = points->count - 1;
