@@ -137,7 +137,8 @@ static enum orl_result read_mask(const struct densifier *d, struct densify_job *
         return ORL_OK;
     }
     ORL_TRY(orl_mask_read(d->log, path, false, &job->mask));
-    if (job->mask.width != picture->width || job->mask.height != picture->height)
+    if (orl_densify_side(job->mask.width, d->shrink) != picture->width ||
+        orl_densify_side(job->mask.height, d->shrink) != picture->height)
         return orl_fail(d->log, ORL_ERR_DATA, "%s: %dx%d, but its photograph is %dx%d", path,
                         job->mask.width, job->mask.height, picture->width, picture->height);
     return ORL_OK;
@@ -398,7 +399,7 @@ static enum orl_result plan_memory(struct densifier *d)
                         "%dx%d: the least is %.1f MiB", d->params.max_vram_bytes >> 20,
                         need.width, need.height, (double)budget.bytes / (1 << 20));
     d->params.sources = budget.sources;
-    d->shrink = budget.shrink;
+    d->shrink = d->cache.shrink = budget.shrink;
     bool less = budget.sources < asked || budget.shrink > 0;
     if (less)
         orl_logf(d->log, ORL_LOG_WARNING,
@@ -477,7 +478,7 @@ enum orl_result orl_densify(struct orl_gpu *gpu, const char *workspace,
 {
     struct densifier d = {.log = orl_gpu_log(gpu), .gpu = gpu, .params = *params,
                           .progress = progress, .workspace = workspace, .lock_fd = -1};
-    d.cache = (struct densify_cache){d.log, &d.photos, ORL_PATH(workspace, "images"), NULL, 0, 0};
+    d.cache = (struct densify_cache){.log = d.log, .photos = &d.photos, .images_dir = ORL_PATH(workspace, "images")};
     enum orl_result result = open_densifier(&d, photos);
     ORL_THEN(result, process_passes(&d));
     close_densifier(&d);

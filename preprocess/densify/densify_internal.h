@@ -85,22 +85,27 @@ int orl_densify_padding(const struct orl_densify_params *params);
 void orl_densify_transfer(const struct orl_view *to, const struct orl_view *from, float rows[3][4]);
 
 // A photograph's luma at every level, each halved by 2x2 boxes. An odd last row or column is left
-// out, so that a coarse pixel k covers exactly the pixels 2k and 2k + 1.
+// out, so that a coarse pixel k covers exactly the pixels 2k and 2k + 1. Where photographs are halved,
+// level 0 is resized before to sides that halve without a rest: whoever reads a map takes it to cover
+// the whole photograph.
 enum { DENSIFY_LEVELS_MAX = 12 };
 struct densify_pyramid {
     struct orl_image levels[DENSIFY_LEVELS_MAX];
     int count;
     struct orl_camera camera; // of level 0
 };
+// A side of level 0 of a photograph that is halved `shrink` times.
+int orl_densify_side(int side, int shrink);
 void orl_densify_pyramid_finish(struct densify_pyramid *pyramid);
 struct orl_camera orl_densify_level_camera(const struct orl_camera *camera, int level);
 
-// A cache of decoded photographs, filled while memory lasts; it begins with the first three members
+// A cache of decoded photographs, filled while memory lasts; it begins with the first four members
 // alone. A pyramid stays valid at least until `turn` is raised.
 struct densify_cache {
     const struct orl_log *log;
     const struct densify_photos *photos;
     const char *images_dir;
+    int shrink; // halvings of the photographs
     struct densify_cache_entry *entries; // owned; of each photograph
     uint64_t turn;
     size_t bytes;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/memory.h"
 #include "io/picture.h"
 #include "preprocess/densify/densify_internal.h"
@@ -21,12 +22,32 @@ static enum orl_result halve(const struct orl_log *log, const struct orl_image *
     return ORL_OK;
 }
 
+int orl_densify_side(int side, int shrink)
+{
+    return side >> shrink << shrink;
+}
+
+static enum orl_result read_whole(const struct orl_log *log, const char *path, int shrink,
+                                  struct orl_image *picture)
+{
+    struct orl_image stored = {0};
+    ORL_TRY(orl_picture_read(log, path, 1, &stored));
+    int width = orl_densify_side(stored.width, shrink), height = orl_densify_side(stored.height, shrink);
+    if (width == stored.width && height == stored.height) {
+        *picture = stored;
+        return ORL_OK;
+    }
+    enum orl_result result = orl_bridge_resize(log, &stored, width, height, picture);
+    orl_image_finish(&stored);
+    return result;
+}
+
 // `pyramid` is zeroed. On success and failure alike, the caller must call orl_densify_pyramid_finish.
-static enum orl_result read_pyramid(const struct orl_log *log, const char *path,
+static enum orl_result read_pyramid(const struct orl_log *log, const char *path, int shrink,
                                     const struct orl_camera *camera,
                                     struct densify_pyramid *pyramid)
 {
-    ORL_TRY(orl_picture_read(log, path, 1, &pyramid->levels[0]));
+    ORL_TRY(read_whole(log, path, shrink, &pyramid->levels[0]));
     const struct orl_image *picture = &pyramid->levels[0];
     pyramid->camera = orl_camera_resized(camera, picture->width, picture->height);
     pyramid->count = 1;
@@ -122,7 +143,7 @@ enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
     if (!entry->pyramid.count) {
         ORL_TRY(read_pyramid(
             cache->log, ORL_PATH(cache->images_dir, "%s", densify_photo_name(cache->photos, photo)),
-            &cache->photos->views[photo].camera, &entry->pyramid));
+            cache->shrink, &cache->photos->views[photo].camera, &entry->pyramid));
         cache->bytes += pyramid_bytes(&entry->pyramid);
     }
     entry->turn = cache->turn;

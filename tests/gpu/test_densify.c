@@ -548,8 +548,8 @@ static void test_little_memory(void **state)
     assert_between(most, params.max_vram_bytes / 4, params.max_vram_bytes);
     for (int i = 0; i < scene.view_count; i++)
         scene.views[i].camera = (struct orl_camera){.width = 107, .height = 101,
-                                                    .fx = 0.6 * 215, .fy = 0.6 * 215,
-                                                    .cx = 0.25 * 215, .cy = 0.25 * 202};
+                                                    .fx = 1.2 * 107, .fy = 0.6 * 215,
+                                                    .cx = 0.5 * 107, .cy = 0.5 * 101};
     assert_recovered(&scene, dir);
     params.max_vram_bytes = 1000;
     assert_int_equal(orl_densify(gpu, dir, NULL, &params, NULL), ORL_ERR_GPU);

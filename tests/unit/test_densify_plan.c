@@ -1,6 +1,7 @@
 // What the densifier plans for a photograph from the sparse points that it sees.
 #include <stdlib.h>
 
+#include "io/picture.h"
 #include "preprocess/densify/densify_internal.h"
 #include "test.h"
 
@@ -69,11 +70,52 @@ static void test_outliers_do_not_widen_the_range(void **state)
     check_ranges(1000, WALL);
 }
 
+// Sides that are no multiples of four: the quarter shows what the whole photograph shows, to its borders.
+static void test_halved_photographs_are_whole(void **state)
+{
+    (void)state;
+    enum { WIDTH = 103, HEIGHT = 81, SHRINK = 2 };
+    struct orl_colmap_model model;
+    struct densify_photos photos;
+    struct orl_image picture;
+    const struct densify_pyramid *pyramid;
+    char *dir = test_dir_make(), *path = test_path(dir, "a");
+    make_row(200, &model);
+    model.cameras[0].pinhole = (struct orl_camera){WIDTH, HEIGHT, 90, 90, 50, 40};
+    assert_int_equal(orl_densify_photos_init(NULL, &model, NULL, &photos), ORL_OK);
+    assert_int_equal(orl_image_init(NULL, &picture, WIDTH, HEIGHT, 3, ORL_PIXEL_U8), ORL_OK);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        picture.u8[i] = (uint8_t)(2 * (i / 3 % WIDTH));
+    assert_int_equal(orl_png_write(NULL, path, &picture), ORL_OK);
+    struct densify_cache cache = {.photos = &photos, .images_dir = dir, .shrink = SHRINK};
+    assert_int_equal(orl_densify_cache_get(&cache, 0, &pyramid), ORL_OK);
+    const struct orl_image *small = &pyramid->levels[SHRINK];
+    assert_int_equal(small->width, WIDTH >> SHRINK);
+    assert_int_equal(small->height, HEIGHT >> SHRINK);
+    const struct orl_camera camera = orl_densify_level_camera(&pyramid->camera, SHRINK);
+    const struct orl_camera whole = orl_camera_resized(&model.cameras[0].pinhole, small->width, small->height);
+    assert_float_equal(camera.fx, whole.fx, 1e-4);
+    assert_float_equal(camera.fy, whole.fy, 1e-4);
+    assert_float_equal(camera.cx, whole.cx, 1e-4);
+    assert_float_equal(camera.cy, whole.cy, 1e-4);
+    for (int x = 0; x < small->width; x++) { // what the photograph has at the middle of the pixel
+        double there = 2 * ((x + 0.5) * WIDTH / small->width - 0.5);
+        assert_float_equal(small->u8[x], there, 2);
+    }
+    orl_densify_cache_finish(&cache);
+    orl_image_finish(&picture);
+    orl_densify_photos_finish(&photos);
+    orl_colmap_finish(&model);
+    free(path);
+    test_dir_remove(dir);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_range_reaches_what_few_points_are_on),
         cmocka_unit_test(test_outliers_do_not_widen_the_range),
+        cmocka_unit_test(test_halved_photographs_are_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
