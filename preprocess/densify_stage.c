@@ -13,10 +13,10 @@ enum { COLMAP_SOURCES = 20 };
 
 // --- COLMAP's lists, of training photographs only ---
 
-// Chooses photographs of `names` that share most sparse points with image `ref`, best first; how many.
+// Chooses the training photographs that share most sparse points with image `ref`, best first; how many.
 // `best` has room for all.
-static size_t best_sources(const struct orl_colmap_model *model, const struct orl_names *names,
-                           size_t ref, bool *seen, struct orl_ranked *best)
+static size_t best_sources(const struct orl_colmap_model *model, const bool *train, size_t ref, bool *seen,
+                           struct orl_ranked *best)
 {
     size_t count = 0;
     const struct orl_colmap_image *image = &model->images[ref];
@@ -25,7 +25,7 @@ static size_t best_sources(const struct orl_colmap_model *model, const struct or
         seen[image->points[p]] = true;
     for (size_t i = 0; i < model->image_count; i++) {
         size_t common = 0;
-        if (i == ref || !orl_names_contain(names, model->images[i].name))
+        if (i == ref || !train[i])
             continue;
         for (size_t p = 0; p < model->images[i].point_count; p++)
             common += seen[model->images[i].points[p]];
@@ -42,11 +42,16 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
     const struct orl_colmap_model *model;
     ORL_TRY(orl_job_sparse(job, &model));
     bool *seen = orl_array(job->log, model->point_count, sizeof *seen);
+    bool *train = orl_array(job->log, model->image_count, sizeof *train);
     struct orl_ranked *best = orl_array(job->log, model->image_count, sizeof *best);
-    for (size_t i = 0; seen && best && i < model->image_count; i++) {
-        if (!orl_names_contain(names, model->images[i].name))
+    enum orl_result result = seen && train && best ? ORL_OK : ORL_ERR_MEMORY;
+    // Names are searched once for each photograph, not for each pair of them.
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
+        train[i] = orl_names_contain(names, model->images[i].name);
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
+        if (!train[i])
             continue;
-        size_t count = best_sources(model, names, i, seen, best);
+        size_t count = best_sources(model, train, i, seen, best);
         if (!count)
             continue; // COLMAP stops at a photograph without sources
         fprintf(out, "%s\n", model->images[i].name);
@@ -54,8 +59,8 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
             fprintf(out, "%s%s", k ? ", " : "", model->images[best[k].index].name);
         fprintf(out, "\n");
     }
-    enum orl_result result = seen && best ? ORL_OK : ORL_ERR_MEMORY;
     free(seen);
+    free(train);
     free(best);
     return result;
 }
