@@ -1,5 +1,6 @@
 #include "preprocess/cloud/fuse_memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -9,6 +10,9 @@
 // Bytes for each pixel: its depth, the pixels that are found, and the points, which are about a third
 // of the pixels.
 enum { PIXEL_BYTES = 4 + 5 + 11 };
+// Bytes for each pixel of a photograph while its normals are read, as they are in the file and in order. The points
+// are fewer than a third of the pixels, which leaves these bytes for a quarter of the photographs.
+enum { READ_BYTES = 24, RESERVED = 4 };
 static const double PROGRAM_BYTES = 32 << 20; // the program, and the photographs that are read
 // Clusters smaller than these lose too many points: photographs at the border of a cluster have fewer
 // neighbours to agree with.
@@ -41,6 +45,12 @@ double orl_fuse_budget(size_t max_ram_bytes)
 double orl_fuse_bytes(double pixels)
 {
     return PROGRAM_BYTES + PIXEL_BYTES * pixels;
+}
+
+size_t orl_fuse_at_once(double pixels, size_t count, double budget)
+{
+    double each = READ_BYTES * fmax(pixels / (double)count, 1), room = fmax(budget - orl_fuse_bytes(pixels), 0);
+    return 1 + count / RESERVED + (size_t)fmin(room / each, (double)count);
 }
 
 // Bytes of a fusion of `fused` of `count` photographs at most, when they are the largest.

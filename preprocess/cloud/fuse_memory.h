@@ -14,6 +14,10 @@ double orl_fuse_pixels(const struct orl_colmap_model *model, const struct orl_na
 // Bytes of a fusion of so many pixels.
 double orl_fuse_bytes(double pixels);
 
+// How many of the `count` photographs of a fusion may be read at once, normals and colours: more than a quarter of
+// them where the budget has room.
+size_t orl_fuse_at_once(double pixels, size_t count, double budget);
+
 // The photographs of a cluster at most: as many as fit in the budget, in bytes, with the photographs
 // that help the cluster (docs/how/pipeline.md#clusters). At most `most`. Clusters are as equal as can
 // be, so a little more or less memory gives the same clusters. *size is at least 1.

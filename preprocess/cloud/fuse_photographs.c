@@ -28,6 +28,7 @@ struct fusion {
     struct orl_depth_map *maps; // owned; of each source
     size_t count;
     struct orl_points *points;
+    size_t at_once; // whose normals and colours are read
     double done, total; // of the progress; done grows to what follows this fusion
 };
 
@@ -147,11 +148,12 @@ static enum orl_result write_pixels(void *priv, size_t i)
     return result;
 }
 
-// Runs a third of the work, one source after the other or side by side: the points are the same.
-static enum orl_result run(struct fusion *f, enum orl_result (*step)(void *priv, size_t source))
+// Runs a third of the work, one source after the other or side by side (in `threads`, 0: on all processors): the
+// points are the same.
+static enum orl_result run(struct fusion *f, enum orl_result (*step)(void *priv, size_t source), size_t threads)
 {
     enum orl_result result = orl_threads_each(&(struct orl_each){
-        .work = step, .priv = f, .count = f->count, .progress = f->job->progress, .step = "fuse",
+        .work = step, .priv = f, .count = f->count, .threads = threads, .progress = f->job->progress, .step = "fuse",
         .done = f->done, .share = 1 / 3.0, .total = f->total});
     f->done += 1 / 3.0;
     return result;
@@ -174,11 +176,13 @@ static enum orl_result make_points(struct fusion *f, struct orl_points *points)
     return orl_points_init(f->job->log, points, count);
 }
 
-static void warn_of_memory(const struct orl_job *job, const struct orl_colmap_model *model,
-                           const struct orl_names *names)
+// Decides how many photographs are read at once, and warns where the fusion takes more than it may.
+static void plan_memory(struct fusion *f, const struct orl_names *names)
 {
-    double needs = orl_fuse_bytes(orl_fuse_pixels(model, names));
+    const struct orl_job *job = f->job;
+    double pixels = orl_fuse_pixels(f->model, names), needs = orl_fuse_bytes(pixels);
     double budget = orl_fuse_budget(job->params->max_ram_bytes);
+    f->at_once = orl_fuse_at_once(pixels, names->count, budget);
     if (needs > budget)
         orl_logf(job->log, ORL_LOG_WARNING, "fuse: %.0f MiB are not enough for %zu photographs; it "
                  "takes about %.0f MiB; --fuse-cluster fuses fewer photographs at a time",
@@ -191,7 +195,7 @@ enum orl_result orl_fuse_photographs(struct orl_job *job, const struct orl_colma
 {
     struct fusion f = {.job = job, .model = model, .done = done, .total = total};
     *points = (struct orl_points){0};
-    warn_of_memory(job, model, names);
+    plan_memory(&f, names);
     f.sources = orl_array(job->log, model->image_count + 1, sizeof *f.sources);
     f.maps = orl_array(job->log, model->image_count + 1, sizeof *f.maps);
     enum orl_result result = f.sources && f.maps ? ORL_OK : ORL_ERR_MEMORY;
@@ -199,10 +203,10 @@ enum orl_result orl_fuse_photographs(struct orl_job *job, const struct orl_colma
         if (orl_names_contain(names, model->images[i].name))
             f.sources[f.count++].image = &model->images[i];
     ORL_THEN(result, find_others(&f));
-    ORL_THEN(result, run(&f, read_depth));
-    ORL_THEN(result, run(&f, find_pixels));
+    ORL_THEN(result, run(&f, read_depth, 0));
+    ORL_THEN(result, run(&f, find_pixels, 0));
     ORL_THEN(result, make_points(&f, points));
-    ORL_THEN(result, run(&f, write_pixels));
+    ORL_THEN(result, run(&f, write_pixels, f.at_once));
     for (size_t i = 0; i < f.count; i++) {
         free(f.sources[i].others);
         orl_fused_pixels_finish(&f.sources[i].found);

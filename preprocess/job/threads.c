@@ -40,9 +40,9 @@ enum orl_result orl_threads_each(const struct orl_each *each)
     struct task task = {.each = each};
     pthread_t threads[THREADS_MAX];
     long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    size_t started = 0;
+    size_t started = 0, most = each->threads && each->threads < each->count ? each->threads : each->count;
     // Fewer than wanted will do.
-    while (started < THREADS_MAX && started + 1 < each->count && (long)started + 1 < processors &&
+    while (started < THREADS_MAX && started + 1 < most && (long)started + 1 < processors &&
            pthread_create(&threads[started], NULL, run_task, &task) == 0)
         started++;
     run_items(&task, true);

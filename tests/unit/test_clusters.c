@@ -238,6 +238,11 @@ static void clusters_follow_the_memory(void **state)
                                             expected[i].bytes, &size), ORL_OK);
         assert_int_equal(size, expected[i].size);
     }
+    // Normals take 24 bytes a pixel while they are read.
+    assert_int_equal(orl_fuse_at_once(100 * mpx, 100, photo), 26);
+    assert_int_equal(orl_fuse_at_once(100 * mpx, 100, program + photo * 100), 26);
+    assert_int_equal(orl_fuse_at_once(100 * mpx, 100, program + photo * 100 + 24 * mpx * 3), 29);
+    assert_int_equal(orl_fuse_at_once(2 * mpx, 2, program + photo * 2), 1);
     orl_names_finish(&names);
     orl_colmap_finish(&model);
 }
