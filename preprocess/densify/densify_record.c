@@ -87,13 +87,14 @@ static enum orl_result make_record(const struct orl_log *log, const char *worksp
     return result;
 }
 
-// True when a photograph of this run has a map of any kind.
-static bool has_maps(const char *workspace, const struct densify_photos *photos)
+// True when a photograph has a map of any kind, one that takes no part in this run, too: a later run with other
+// settings removes the folders as a whole.
+static bool has_maps(const char *workspace, const struct orl_colmap_model *model)
 {
     static const char *const kinds[] = {"photometric", "geometric"};
-    for (size_t i = 0; i < photos->count; i++)
+    for (size_t i = 0; i < model->image_count; i++)
         for (size_t k = 0; k < ORL_COUNT(kinds) * ORL_COUNT(map_dirs); k++)
-            if (orl_path_is_file(ORL_PATH(workspace, "%s/%s.%s.bin", map_dirs[k / 2], densify_photo_name(photos, i),
+            if (orl_path_is_file(ORL_PATH(workspace, "%s/%s.%s.bin", map_dirs[k / 2], model->images[i].name,
                                           kinds[k % 2])))
                 return true;
     return false;
@@ -127,7 +128,7 @@ enum orl_result orl_densify_claim_maps(const struct orl_log *log, const char *wo
     const char *stereo = ORL_PATH(workspace, "stereo"), *path = ORL_PATH(workspace, "stereo/densify.json");
     ORL_TRY(refuse_links(log, workspace));
     ORL_TRY(make_record(log, workspace, photos, params, shrink, &record));
-    bool any = has_maps(workspace, photos), ours = orl_path_is_file(path);
+    bool any = has_maps(workspace, photos->model), ours = orl_path_is_file(path);
     enum orl_result result = ORL_OK;
     if (any && !ours) {
         result = orl_fail(log, ORL_ERR_ARGUMENT,

@@ -432,6 +432,10 @@ static void test_maps_of_others_stay(void **state)
     for (int i = 1; i < VIEWS_MAX; i++)
         assert_int_equal(unlink(map_path(dir, "depth", i, "geometric")), 0);
     assert_int_equal(orl_densify(gpu, dir, NULL, &quick, NULL), ORL_ERR_ARGUMENT);
+    // Nor without the photograph that has them: the next run would take the folder for ours.
+    char *items[] = {"b.png", "c.png", "d.png"};
+    struct orl_names others = {.count = 3, .items = items};
+    assert_int_equal(orl_densify(gpu, dir, &others, &quick, NULL), ORL_ERR_ARGUMENT);
     assert_true(orl_path_is_file(map_path(dir, "depth", 0, "geometric")));
     assert_false(orl_path_is_file(map_path(dir, "depth", 1, "geometric")));
     test_dir_remove(dir);
