@@ -125,7 +125,7 @@ static const struct stage stages[ORL_STAGE_COUNT] = {
                         .reads = "stereo/.oriel-key", .pixel_bytes = 6},
     [ORL_STAGE_RADII] = {"radii", 4, ORL_STAGE_FUSE, orl_stage_radii_settings, orl_stage_radii,
                          {"points.ply", ORL_LOD_NAME}, "points", true, .pixel_bytes = 3},
-    [ORL_STAGE_GROUND] = {"ground", 4, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
+    [ORL_STAGE_GROUND] = {"ground", 5, ORL_STAGE_RADII, NULL, orl_stage_ground, {0},
                           "ground", .repeatable = true},
     [ORL_STAGE_MESH] = {"mesh", 1, ORL_STAGE_RADII, test_settings, orl_stage_mesh, {"mesh.ply"},
                         "triangles", true, .wanted = is_mesh_wanted},

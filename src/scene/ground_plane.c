@@ -63,6 +63,17 @@ static void take_photos(const struct orl_scene *scene, struct sample *s)
     }
 }
 
+// Of the training photographs alone, unlike orl_scene_mean_up.
+static void find_up(const struct orl_scene *scene, double up[3])
+{
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        struct orl_view view = orl_photo_upright(&scene->photos[i]);
+        for (int k = 0; !scene->photos[i].test && k < 3; k++)
+            up[k] -= view.cam_from_world.r[1][k];
+    }
+    orl_normalize3(up);
+}
+
 // The area of a disc as the nearest photograph sees it. Points lie closer together at outlines than on
 // smooth surfaces, so that their number alone would not tell how much of a picture a plane fills.
 static double seen_size(const struct sample *s, const struct orl_points *points, size_t i)
@@ -86,7 +97,7 @@ static enum orl_result take_sample(const struct orl_log *log, const struct orl_s
     ORL_TRY_MEMORY(s->position && s->normal);
     s->tolerance = TOLERANCE * scene->photo_distance;
     take_photos(scene, s);
-    orl_scene_mean_up(scene, s->up);
+    find_up(scene, s->up);
     double total = 0, passed = 0;
     for (size_t i = 0; i < points->count; i++)
         total += seen_size(s, points, i);

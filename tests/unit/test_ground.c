@@ -141,6 +141,14 @@ static void held_out_photographs_have_no_say(void **state)
     s.photos[4].test = true;
     struct orl_ground held_out = find(&s);
     assert_float_equal(held_out.height, without.height, 0.05);
+    // Nor on which way is up, however many they are.
+    for (int i = 3; i < PHOTOS; i++)
+        s.photos[i].test = true;
+    held_out = find(&s);
+    assert_true(held_out.height > 1);
+    for (int i = 3; i < PHOTOS; i++)
+        s.photos[i].orientation = 3;
+    assert_float_equal(find(&s).height, held_out.height, 0);
     orl_points_finish(&s.scene.points);
 }
 
