@@ -85,8 +85,9 @@ static enum orl_result apply_mask(const struct orl_job *job, const char *name,
     enum orl_result result = orl_path_is_file(path) ? orl_picture_read(job->log, path, 1, &mask) : ORL_OK;
     for (int y = 0; mask.u8 && y < depth->height; y++)
         for (int x = 0; x < depth->width; x++) {
-            size_t u = (size_t)x * (size_t)mask.width / (size_t)depth->width;
-            size_t v = (size_t)y * (size_t)mask.height / (size_t)depth->height;
+            // At the middle of the depth map's pixel, which may be several wide in the mask.
+            size_t u = (2 * (size_t)x + 1) * (size_t)mask.width / (2 * (size_t)depth->width);
+            size_t v = (2 * (size_t)y + 1) * (size_t)mask.height / (2 * (size_t)depth->height);
             if (mask.u8[v * (size_t)mask.width + u] == 0)
                 depth->f32[(size_t)y * (size_t)depth->width + (size_t)x] = 0;
         }
