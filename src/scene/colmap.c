@@ -21,6 +21,7 @@ static const struct {
     {"RAD_TAN_THIN_PRISM_FISHEYE", {16, 2, ORL_LENS_RAD_TAN_THIN_PRISM}},
     {"SIMPLE_DIVISION", {4, 1, ORL_LENS_DIVISION}}, {"DIVISION", {5, 2, ORL_LENS_DIVISION}},
     {"SIMPLE_FISHEYE", {3, 1, ORL_LENS_FISHEYE}},   {"FISHEYE", {4, 2, ORL_LENS_FISHEYE}},
+    {"EUCM", {6, 2, ORL_LENS_EUCM}},
 };
 
 struct orl_colmap_lens orl_colmap_model_lens(int model)

@@ -75,6 +75,15 @@ static void division(double k, double uv[2])
     uv[1] *= scale;
 }
 
+// k0 alpha, k1 beta of the enhanced unified camera model (Khomutenko et al. 2016); NaN where there is no pixel.
+static void unified(const double *k, double uv[2])
+{
+    double r2 = uv[0] * uv[0] + uv[1] * uv[1], depth = k[0] * sqrt(k[1] * r2 + 1) + 1 - k[0];
+    double scale = depth > 0 ? 1 / depth : NAN;
+    uv[0] *= scale;
+    uv[1] *= scale;
+}
+
 void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const double ray[2],
                                double pixel[2])
 {
@@ -102,6 +111,9 @@ void orl_colmap_camera_project(const struct orl_colmap_camera *camera, const dou
         break;
     case ORL_LENS_DIVISION:
         division(k[0], uv);
+        break;
+    case ORL_LENS_EUCM:
+        unified(k, uv);
         break;
     }
     pixel[0] = c->fx * uv[0] + c->cx;

@@ -6,7 +6,7 @@
 
 // How a camera model distorts: as OpenCV does, or not at all; by the angle from the axis; ...
 enum orl_colmap_lens_kind { ORL_LENS_FLAT, ORL_LENS_FISHEYE, ORL_LENS_FOV, ORL_LENS_THIN_PRISM,
-                            ORL_LENS_RAD_TAN_THIN_PRISM, ORL_LENS_DIVISION };
+                            ORL_LENS_RAD_TAN_THIN_PRISM, ORL_LENS_DIVISION, ORL_LENS_EUCM };
 struct orl_colmap_lens {
     int params;        // how many the model has
     int focal_lengths; // 1: they start with f cx cy; 2: with fx fy cx cy; distortion follows

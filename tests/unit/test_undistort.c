@@ -63,6 +63,8 @@ static const struct camera_case {
     {"DIVISION", "200 100 121 79 -0.1", {0, 1}, {121, 170.6080}},
     {"SIMPLE_FISHEYE", "200 121 79", {1, 0}, {278.0796, 79}},
     {"FISHEYE", "200 100 121 79", {0, 1}, {121, 157.5398}},
+    // 1 / (0.5 sqrt(1.2 + 1) + 0.5) = 0.805399
+    {"EUCM", "200 100 121 79 0.5 1.2", {1, 0}, {282.0799, 79}},
 };
 
 static void write_model(const char *to, const struct camera_case *c)
