@@ -11,8 +11,9 @@
 #include "scene/colmap_internal.h"
 #include "scene/text_lines.h"
 
-// Smallest possible sizes of binary records in bytes, to check counts against the file's size.
-enum { CAMERA_MIN = 48, IMAGE_MIN = 73, POINT_MIN = 51, POINT2D_SIZE = 24, TRACK_SIZE = 8 };
+// Smallest possible sizes of binary records in bytes, to check counts against the file's size. A panorama's
+// camera has two parameters.
+enum { CAMERA_MIN = 40, IMAGE_MIN = 73, POINT_MIN = 51, POINT2D_SIZE = 24, TRACK_SIZE = 8 };
 
 struct reader {
     const struct orl_log *log;
@@ -102,6 +103,8 @@ static bool next(struct reader *r)
 
 // --- cameras ---
 
+enum { EQUIRECTANGULAR = 17 }; // COLMAP's id of the model of panoramas
+
 static enum orl_result read_camera_model(struct reader *r, struct orl_colmap_camera *camera)
 {
     char name[64] = "", what[192];
@@ -123,7 +126,7 @@ static enum orl_result read_camera_model(struct reader *r, struct orl_colmap_cam
     if (camera->param_count)
         return ORL_OK;
     snprintf(what, sizeof what, "unknown camera model %s; %s", name,
-             strcmp(name, "EQUIRECTANGULAR") == 0
+             camera->model == EQUIRECTANGULAR || strcmp(name, "EQUIRECTANGULAR") == 0
                  ? "panoramas are not read: cut flat views out of them"
                  : "undistort the pictures with the program that made it");
     return bad(r, what);

@@ -358,6 +358,29 @@ static void refuses_absurd_binary(void **state)
     }
 }
 
+// COLMAP 4.1's model of panoramas, the camera with the fewest parameters.
+static void names_binary_panoramas(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make();
+    struct model_files f = sample();
+    f.cameras.size = 0;
+    put_u64(&f.cameras, 1);
+    put_u32(&f.cameras, 7);
+    put_u32(&f.cameras, 17);
+    for (int i = 0; i < 2; i++)
+        put_u64(&f.cameras, 640);
+    for (int i = 0; i < 2; i++)
+        put_f64(&f.cameras, 640);
+    save_model(dir, &f);
+    struct said said;
+    struct orl_log log = log_to(&said);
+    struct orl_colmap_model m;
+    assert_int_equal(orl_colmap_read(&log, dir, &m), ORL_ERR_FORMAT);
+    assert_non_null(strstr(said.text, "unknown camera model 17; panoramas are not read: cut flat views"));
+    test_dir_remove(dir);
+}
+
 static void names_a_missing_model(void **state)
 {
     (void)state;
@@ -464,6 +487,7 @@ int main(void)
         cmocka_unit_test(refuses_huge_counts),
         cmocka_unit_test(drops_points_that_are_not_finite),
         cmocka_unit_test(refuses_absurd_binary),
+        cmocka_unit_test(names_binary_panoramas),
         cmocka_unit_test(names_a_missing_model),
         cmocka_unit_test(round_trips_maps),
         cmocka_unit_test(refuses_bad_maps),
