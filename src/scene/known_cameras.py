@@ -706,15 +706,19 @@ def meshroom_pinhole(root, lens):
         return "its size is missing"
     both, one = numbers(get(lens, "pxFocalLength"), 2, loose_number), loose_number(get(lens, "pxFocalLength"))
     focal, sensor = loose_number(get(lens, "focalLength")), loose_number(get(lens, "sensorWidth"))
+    major, minor, revision = numbers(get(root, "version"), 3, loose_number) or (0, 0, 0)
+    version = major * 1e6 + minor * 1e3 + revision
     if both or one is not None:
         fx, fy = both or (one, one)
     elif focal is not None and sensor is not None and sensor > 0:
-        fx, ratio = focal / sensor * width, loose_number(get(lens, "pixelRatio"))
-        fy = fx * ratio if ratio is not None and ratio > 0 else fx
+        told = loose_number(get(lens, "pixelRatio"))
+        ratio = told if told is not None and told > 0 else 1
+        # A pixel's width by its height, thus fy / fx; before 1.2.5 the inverse. Since 1.2.11 the focal length is fy.
+        fx = focal / sensor * width / (ratio if version >= 1002011 else 1)
+        fy = fx / ratio if version < 1002005 else fx * ratio
     else:
         return "its focal length is missing"
-    version = numbers(get(root, "version"), 3, loose_number) or (0, 0, 0)
-    of_centre = version[0] * 1e6 + version[1] * 1e3 + version[2] >= 1002001
+    of_centre = version >= 1002001
     told = numbers(get(lens, "principalPoint"), 2, loose_number)
     centre = 0.5 * width, 0.5 * height
     if told:

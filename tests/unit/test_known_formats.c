@@ -389,6 +389,19 @@ static void reads_meshroom(void **state)
          "\"0.4\"]"));
     assert_int_equal(read(w, ""), ORL_OK);
     check_params(w, 4, (double[]){500, 500, 330, 240, 0.1, 0.2, 0.3, 0.4}, 8);
+    // "pixelRatio" is fx / fy before 1.2.5, then fy / fx. The focal length is that of x, since 1.2.11 that of y.
+    static const struct {
+        const char *revision;
+        double fx, fy;
+    } ratios[] = {{"4", 500, 400}, {"5", 500, 625}, {"10", 500, 625}, {"11", 400, 500}};
+    for (size_t i = 0; i < ORL_COUNT(ratios); i++) {
+        char text[4096];
+        snprintf(text, sizeof text, MESHROOM("\"1\", \"2\", \"%s\"", "\"type\": \"pinhole\", \"focalLength\": "
+                 "\"28.125\", \"sensorWidth\": \"36\", \"pixelRatio\": \"1.25\""), ratios[i].revision);
+        save(w, "cameras.sfm", text);
+        assert_int_equal(read(w, ""), ORL_OK);
+        check_params(w, 1, (double[]){ratios[i].fx, ratios[i].fy, 320, 240}, 4);
+    }
     save(w, "cameras.sfm", MESHROOM("\"1\", \"2\", \"6\"", "\"type\": \"pinhole\", \"pxFocalLength\": [\"500\", "
          "\"510\"], \"distortionType\": \"3declassicld\""));
     assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
