@@ -731,9 +731,11 @@ def meshroom_lens(root, lens):
     found = meshroom_pinhole(root, lens)
     if isinstance(found, str):
         return found
-    kind = text(lens, "distortionType")
-    kind = text(lens, "type") if kind is None else kind
-    if kind not in MESHROOM:
+    # Since 1.2.8 "type" is the projection alone, and matchmovers' distortions stand under "undistortionType".
+    projection, kind = text(lens, "type"), text(lens, "distortionType")
+    kind = projection if kind is None else kind
+    if kind not in MESHROOM or projection not in (None, *MESHROOM) or (
+            kind == "none" and text(lens, "undistortionType") not in (None, "none")):
         return "its type is none of pinhole, radial1, radial3, brown and fisheye4"
     stated, places, terms = get(lens, "distortionParams"), MESHROOM[kind], [0] * 5
     if places and isinstance(stated, list) and stated:
@@ -771,7 +773,7 @@ def add_meshroom_view(source, view, lenses, poses):
 def read_meshroom(source):
     used = {"version", "views", "intrinsics", "poses", "structure", "viewId", "poseId", "intrinsicId", "subPoseId", "path",
             "width", "height", "pose", "type", "distortionType", "distortionParams", "pxFocalLength", "focalLength",
-            "sensorWidth", "pixelRatio", "principalPoint"}
+            "undistortionType", "sensorWidth", "pixelRatio", "principalPoint"}
     views, lenses, poses = (entries(get(source.root, key)) for key in ("views", "intrinsics", "poses"))
     lens_of = {id_text(lens, "intrinsicId"): lens for lens in lenses}
     pose_of = {id_text(pose, "poseId"): pose for pose in poses}

@@ -406,6 +406,19 @@ static void reads_meshroom(void **state)
          "\"510\"], \"distortionType\": \"3declassicld\""));
     assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
     says(w, "intrinsic 7: its type is none of");
+    // Lenses of 1.2.8 and later that are not pinholes, though their distortion is "none".
+    save(w, "cameras.sfm", MESHROOM("\"1\", \"2\", \"8\"", "\"type\": \"equidistant\", \"focalLength\": \"28.125\", "
+         "\"sensorWidth\": \"36\", \"distortionType\": \"none\", \"undistortionType\": \"none\""));
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "intrinsic 7: its type is none of");
+    save(w, "cameras.sfm", MESHROOM("\"1\", \"2\", \"8\"", "\"type\": \"pinhole\", \"focalLength\": \"28.125\", "
+         "\"sensorWidth\": \"36\", \"distortionType\": \"none\", \"undistortionType\": \"3deanamorphic4\""));
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "intrinsic 7: its type is none of");
+    save(w, "cameras.sfm", MESHROOM("\"1\", \"2\", \"8\"", "\"type\": \"pinhole\", \"focalLength\": \"28.125\", "
+         "\"sensorWidth\": \"36\", \"distortionType\": \"none\", \"undistortionType\": \"none\""));
+    assert_int_equal(read(w, ""), ORL_OK);
+    check_params(w, 1, (double[]){500, 500, 320, 240}, 4);
 }
 
 #define XML(sensor, cameras) "<?xml version=\"1.0\"?><document><chunk><sensors><sensor id=\"3\" type=\"frame\">" \
