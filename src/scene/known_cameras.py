@@ -6,9 +6,9 @@ of the centre of the first pixel, negative where the user does not state it.
 
 Besides the keys of Oriel's own form, OUT/cameras.json has `format`, `path` (for messages), `found` (the file, which
 pictures are relative to), `said` (messages), `error` and `points_file`, and each camera `place` (for messages),
-`mask`, `split`, `fisheye` and what the file does not state: `no_size`, `no_centre`, `side` and `fov_x` (struct
-orl_known_gap). A byte of a text is one character there, since names of files need not be UTF-8. A line of points.txt
-is x y z, r g b and the indices of the cameras that see the point.
+`mask`, `split`, `fisheye`, `thin_prism` and what the file does not state: `no_size`, `no_centre`, `side` and `fov_x`
+(struct orl_known_gap). A byte of a text is one character there, since names of files need not be UTF-8. A line of
+points.txt is x y z, r g b and the indices of the cameras that see the point.
 
 The program checks sizes, lenses and rotations; a number that is not finite reaches it as one that it refuses.
 """
@@ -1074,7 +1074,7 @@ class Metashape:
             (self.components[-1] if inside else self.chunk)[name] = self.take_numbers(name, counts[name])
 
     def lens(self, sensor):
-        """fx fy cx cy and distortion, and whether it is a fisheye; or the problem, a text."""
+        """fx fy cx cy and distortion, and the kind of lens; or the problem, a text."""
         fisheye, v = sensor["type"] in ("fisheye", "equidistant_fisheye"), sensor["terms"]
         width, height = sensor["size"]
         if not v:
@@ -1083,9 +1083,13 @@ class Metashape:
             return "its type is neither frame nor fisheye: panoramas and others cannot be used"
         if abs(v["b2"]) * height > v["f"] or v["p3"] or v["p4"] or (not fisheye and v["k4"]):
             return "its calibration has b2, k4, p3 or p4: leave them out, or export undistorted pictures"
-        # Metashape's p1 and p2 have the places of OpenCV's p2 and p1.
-        terms = ("k1", "k2", "k3", "k4") if fisheye else ("k1", "k2", "p2", "p1", "k3")
-        return [v["f"] + v["b1"], v["f"], 0.5 * width + v["cx"], 0.5 * height + v["cy"], *(v[key] for key in terms)], fisheye
+        # Metashape's p1 and p2 have the places of OpenCV's p2 and p1. Its fisheye applies all terms behind the angle,
+        # as COLMAP's thin prism does.
+        bent = fisheye and bool(v["p1"] or v["p2"])
+        terms = (("k1", "k2", "p2", "p1", "k3", "k4") if bent else ("k1", "k2", "k3", "k4") if fisheye else
+                 ("k1", "k2", "p2", "p1", "k3"))
+        lens = [v["f"] + v["b1"], v["f"], 0.5 * width + v["cx"], 0.5 * height + v["cy"], *(v[key] for key in terms)]
+        return lens, {"thin_prism": bent, "fisheye": fisheye}
 
     def pose(self, camera):
         c = next((c for c in self.components[::-1] if c["id"] == camera.get("component_id", "")), self.chunk)
@@ -1102,7 +1106,7 @@ class Metashape:
         pose = self.pose(camera)
         if isinstance(lens, str) or not pose:
             raise source.bad(f"camera {label[:120]}", lens if isinstance(lens, str) else "its transform is not a pose")
-        source.add(label, label, lens[0], pose, sensor["size"], fisheye=lens[1])
+        source.add(label, label, lens[0], pose, sensor["size"], **lens[1])
 
 
 def read_metashape(source):

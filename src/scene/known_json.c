@@ -16,7 +16,7 @@
 enum { PLACE_SIZE = 160 };
 
 // COLMAP's ids of the camera models that are made.
-enum { PINHOLE = 1, OPENCV = 4, OPENCV_FISHEYE = 5, FULL_OPENCV = 6 };
+enum { PINHOLE = 1, OPENCV = 4, OPENCV_FISHEYE = 5, FULL_OPENCV = 6, THIN_PRISM_FISHEYE = 10 };
 
 struct source {
     const struct orl_log *log;
@@ -32,7 +32,8 @@ static enum orl_result bad(const struct source *source, const char *place, const
 
 // --- cameras ---
 
-// Takes K and OpenCV's distortion, k1 k2 p1 p2 k3 k4 k5 k6 or of a fisheye k1 k2 k3 k4, as the simplest model.
+// Takes K and OpenCV's distortion, k1 k2 p1 p2 k3 k4 k5 k6 or of a fisheye k1 k2 k3 k4, as the simplest model; or
+// that of a thin prism, k1 k2 p1 p2 k3 k4.
 static enum orl_result read_lens(const struct source *source, const json_t *item, struct orl_known_camera *camera)
 {
     double k[3][3], d[8] = {0};
@@ -52,7 +53,8 @@ static enum orl_result read_lens(const struct source *source, const json_t *item
         full = full || (i >= 4 && d[i] != 0);
     }
     bool fisheye = source->converted && json_is_true(json_object_get(item, "fisheye"));
-    camera->model = fisheye ? OPENCV_FISHEYE : full ? FULL_OPENCV : any ? OPENCV : PINHOLE;
+    bool prism = source->converted && json_is_true(json_object_get(item, "thin_prism"));
+    camera->model = prism ? THIN_PRISM_FISHEYE : fisheye ? OPENCV_FISHEYE : full ? FULL_OPENCV : any ? OPENCV : PINHOLE;
     const double f_c[4] = {k[0][0], k[1][1], k[0][2] + source->shift, k[1][2] + source->shift};
     memcpy(camera->params, f_c, sizeof f_c);
     memcpy(camera->params + ORL_COUNT(f_c), d, sizeof d);

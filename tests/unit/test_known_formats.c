@@ -421,12 +421,14 @@ static void reads_meshroom(void **state)
     check_params(w, 1, (double[]){500, 500, 320, 240}, 4);
 }
 
-#define XML(sensor, cameras) "<?xml version=\"1.0\"?><document><chunk><sensors><sensor id=\"3\" type=\"frame\">" \
-    "<resolution width=\"640\" height=\"480\"/><calibration class=\"initial\"><f>1</f></calibration>" \
-    "<calibration type=\"frame\" class=\"adjusted\"><f>500</f><cx>10</cx>" sensor \
+#define XML_OF(type, sensor, cameras) "<?xml version=\"1.0\"?><document><chunk><sensors>" \
+    "<sensor id=\"3\" type=\"frame\"><resolution width=\"640\" height=\"480\"/>" \
+    "<calibration class=\"initial\"><f>1</f></calibration>" \
+    "<calibration type=\"" type "\" class=\"adjusted\"><f>500</f><cx>10</cx>" sensor \
     "</calibration></sensor></sensors><components><component id=\"1\"><transform><rotation>0 -1 0 1 0 0 0 0 " \
     "1</rotation><translation>5 0 1</translation><scale>2</scale></transform></component></components>" \
     "<cameras><group>" cameras "</group></cameras></chunk></document>"
+#define XML(sensor, cameras) XML_OF("frame", sensor, cameras)
 // In the component's frame: axes turned back by 90 degrees, and (1, 2, 3) = 2 R (1, 2, 1) + (5, 0, 1).
 #define PLACED(attributes) "<camera id=\"0\" sensor_id=\"3\" component_id=\"1\" label=\"a\"" attributes ">" \
     "<transform>-1 0 0 1 0 -1 0 2 0 0 1 1 0 0 0 1</transform></camera>"
@@ -442,6 +444,14 @@ static void reads_metashape(void **state)
     // p1 and p2 have each other's place in OpenCV's model.
     check_params(w, 4, (double[]){502, 500, 330, 240, 0.1, 0, 0.4, 0.3}, 8);
     says(w, "1 of 2 cameras are not aligned: left out");
+    // A fisheye, with the terms that Metashape fits by default, is a thin prism of COLMAP's.
+    save(w, "cameras.xml", XML_OF("fisheye", "<k1>0.1</k1><k2>0.2</k2><k3>0.5</k3><k4>0.6</k4>", PLACED("")));
+    assert_int_equal(read(w, ""), ORL_OK);
+    check_params(w, 5, (double[]){500, 500, 330, 240, 0.1, 0.2, 0.5, 0.6}, 8);
+    save(w, "cameras.xml", XML_OF("equidistant_fisheye", "<k1>0.1</k1><k2>0.2</k2><k3>0.5</k3><k4>0.6</k4>"
+         "<p1>0.3</p1><p2>0.4</p2>", PLACED("")));
+    assert_int_equal(read(w, ""), ORL_OK);
+    check_params(w, 10, (double[]){500, 500, 330, 240, 0.1, 0.2, 0.4, 0.3, 0.5, 0.6, 0, 0}, 12);
     save(w, "cameras.xml", XML("", PLACED(" enabled=\"false\"")));
     assert_int_equal(read(w, ""), ORL_ERR_DATA);
     says(w, "1 of 1 cameras are disabled: left out");
