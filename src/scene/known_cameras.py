@@ -814,10 +814,12 @@ def read_middlebury(source):
 
 # --- Bundler (bundle.out v0.3): cameras f k1 k2, R, t with OpenGL's axes; points ---
 
-def bundler_pictures(folder):
-    """The list of pictures, one a line. Names may have spaces: Bundler writes " 0 FOCAL" after them, or nothing; other
-    programs separate them by tabs."""
-    known = ("list.txt", "bundle/list.txt", "../list.txt", "imagelist.lst")  # the last is RealityCapture's
+def bundler_pictures(folder, base):
+    """The list of pictures, one a line, of the file `base`. Names may have spaces: Bundler writes " 0 FOCAL" after them,
+    or nothing; other programs separate them by tabs."""
+    # COLMAP writes NAME.bundle.out and NAME.list.txt; the last is RealityCapture's.
+    known = (base.removesuffix(".out").removesuffix(".bundle") + ".list.txt", "list.txt", "bundle/list.txt",
+             "../list.txt", "imagelist.lst")
     path = next((path for path in (os.path.join(folder, name) for name in known) if os.path.isfile(path)), None)
     if not path:
         raise Refused(f"{folder}: Bundler's cameras need list.txt, the names of their pictures, beside them",
@@ -850,7 +852,8 @@ def add_bundler_camera(source, lines, index, name):
 
 def read_bundler(source):
     """The principal point is always the picture's centre, so that the custom of pixel centres is of no use."""
-    pictures, lines, image_of = bundler_pictures(source.folder), Lines(source.path), []
+    pictures = bundler_pictures(source.folder, os.path.basename(source.path))
+    lines, image_of = Lines(source.path), []
     what = "not the numbers of cameras and points"
     if not lines.next():
         raise lines.bad(what)

@@ -310,6 +310,11 @@ static void reads_lists_with_spaces(void **state)
     assert_string_equal(name_of(w, 2), "c.jpg");
     assert_string_equal(name_of(w, 3), "image 4");
     check_pose(w, 0);
+    // COLMAP's names of the two files.
+    save(w, "colmap/scene.bundle.out", "# Bundle file v0.3\n1 0\n" BUNDLER);
+    save(w, "colmap/scene.list.txt", "my photos/d 4.jpg\n");
+    assert_int_equal(read(w, "colmap/scene.bundle.out"), ORL_OK);
+    assert_string_equal(name_of(w, 0), "d 4.jpg");
 }
 
 static void refuses_utf16(void **state)
