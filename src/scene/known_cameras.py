@@ -463,19 +463,34 @@ def same_picture(a, b):
     return b[-len(a):] == a
 
 
-def is_listed(root, key, path):
-    names = get(root, key)
-    names = [name.removeprefix("./") for name in names if isinstance(name, str)] if isinstance(names, list) else []
-    return any(name and same_picture(name, path.removeprefix("./")) for name in names)
+def stem(path):
+    """What all paths of the same picture have in common."""
+    name = re.split(r"[/\\]", path)[-1]
+    return name.rpartition(".")[0] if "." in name else name
 
 
-def split_of(root, path):
-    """Where the file has lists of photographs, those on none of them are not used. Photographs for validation are held
-    out where there are none for testing."""
-    if is_listed(root, "test_filenames", path) or (
-            not entries(get(root, "test_filenames")) and is_listed(root, "val_filenames", path)):
-        return "test"
-    return "train" if "train_filenames" not in root or is_listed(root, "train_filenames", path) else "unused"
+class Lists:
+    """The lists of photographs that a file has, by their stems: comparing each frame with each name takes minutes where
+    they are thousands."""
+
+    def __init__(self, root):
+        self.root, self.by_stem = root, {}
+        for key in ("train_filenames", "val_filenames", "test_filenames"):
+            names = get(root, key)
+            for name in names if isinstance(names, list) else ():
+                if isinstance(name, str) and name.removeprefix("./"):
+                    self.by_stem.setdefault((key, stem(name)), []).append(name.removeprefix("./"))
+
+    def name(self, key, path):
+        return any(same_picture(name, path.removeprefix("./")) for name in self.by_stem.get((key, stem(path)), ()))
+
+    def split(self, path):
+        """Where the file has lists of photographs, those on none of them are not used. Photographs for validation are
+        held out where there are none for testing."""
+        if self.name("test_filenames", path) or (
+                not entries(get(self.root, "test_filenames")) and self.name("val_filenames", path)):
+            return "test"
+        return "train" if "train_filenames" not in self.root or self.name("train_filenames", path) else "unused"
 
 
 def read_frames(source, split=None):
@@ -483,15 +498,16 @@ def read_frames(source, split=None):
     used = {"frames", "file_path", "transform_matrix", "mask_path", "camera_model", "w", "h", "fl_x", "fl_y", "cx", "cy",
             "k1", "k2", "k3", "k4", "p1", "p2", "camera_angle_x", "camera_angle_y", "is_fisheye", "train_filenames",
             "val_filenames", "test_filenames", "ply_file_path"}
-    root, splits = source.root, set()
+    root, splits, lists = source.root, set(), Lists(source.root)
     frames = entries(get(root, "frames"))
     for index, entry in enumerate(frames):
         path = text(entry, "file_path")
         place = camera_place(index, path)
         if path is None:
             raise source.bad(place, 'no "file_path"')
-        splits.add(split or split_of(root, path))
-        add_nerfstudio(source, place, path, entry, split or split_of(root, path))
+        of = split or lists.split(path)
+        splits.add(of)
+        add_nerfstudio(source, place, path, entry, of)
     source.say_unused([root, *frames], used)
     if not split and "test" not in splits and entries(get(root, "test_filenames")):
         source.out.say(f"{source.path}: test_filenames has none of the frames: none is held out", warns=True)

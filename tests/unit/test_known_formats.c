@@ -2,6 +2,7 @@
 // besides cameras: one camera, by hand, in each format.
 #include <math.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "oriel/path.h"
 #include "scene/known_cameras.h"
@@ -238,6 +239,36 @@ static void takes_lists_as_others_write_them(void **state)
          FRAME("images/a.jpg") "]}");
     assert_int_equal(read(w, ""), ORL_ERR_DATA);
     says(w, "train_filenames has none of the frames");
+}
+
+// Processor seconds of the script for frames that are all in a list.
+static double seconds_for_lists(struct work *w, int count)
+{
+    struct rusage before, after;
+    FILE *file = test_create(w->dir, "transforms.json");
+    fprintf(file, "{" LENS ", \"train_filenames\": [");
+    for (int i = 0; i < count; i++)
+        fprintf(file, "\"images/%05d.jpg\", ", i);
+    fprintf(file, "\"x.jpg\"], \"frames\": [");
+    for (int i = 0; i < count; i++)
+        fprintf(file, "%s{\"file_path\": \"images/%05d.jpg\", " MATRIX "}", i ? ", " : "", i);
+    fprintf(file, "]}");
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(getrusage(RUSAGE_CHILDREN, &before), 0);
+    assert_int_equal(read(w, "transforms.json"), ORL_OK);
+    assert_int_equal(getrusage(RUSAGE_CHILDREN, &after), 0);
+    assert_int_equal(w->known.model.image_count, count);
+    return (double)(after.ru_utime.tv_sec - before.ru_utime.tv_sec) +
+           1e-6 * (double)(after.ru_utime.tv_usec - before.ru_utime.tv_usec);
+}
+
+// Eight times as many frames take eight times as long at most, not 64 times.
+static void long_lists_take_little_time(void **state)
+{
+    struct work *w = *state;
+    double few = seconds_for_lists(w, 1000), many = seconds_for_lists(w, 8000);
+    if (many > 24 * few)
+        fail_msg("1000 frames take %.3f s, 8000 take %.3f s", few, many);
 }
 
 static void knows_fisheye_lenses_by_all_spellings(void **state)
@@ -662,6 +693,7 @@ int main(void)
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(takes_the_largest_model), TEST(finds_models_in_other_folders), TEST(takes_lists_as_others_write_them),
+        TEST(long_lists_take_little_time),
         TEST(knows_fisheye_lenses_by_all_spellings), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
         TEST(reads_names_of_other_systems), TEST(takes_what_transforms_state),
         TEST(names_pictures_by_what_tells_them_apart), TEST(reads_blender_sets),
