@@ -6,6 +6,7 @@
 #include "core/json.h"
 #include "core/new_dir.h"
 #include "exchange/kinds.h"
+#include "scene/upright.h"
 
 // world_from_camera, with y up and z backward in the camera.
 static json_t *pack_matrix(const struct orl_pose *pose, const double origin[3])
@@ -46,8 +47,10 @@ static enum orl_result add_frame(const struct orl_log *log, const struct orl_sce
 static enum orl_result fill(const struct orl_log *log, const struct orl_progress *progress,
                             const struct orl_scene *scene, const char *dir)
 {
-    json_t *root = json_pack("{s:s, s:[], s:[], s:[], s:[]}", "camera_model", "PINHOLE",
-                             "train_filenames", "val_filenames", "test_filenames", "frames");
+    double up[3]; // instant-ngp and the script for Blender read it
+    orl_scene_mean_up(scene, up);
+    json_t *root = json_pack("{s:s, s:[f, f, f], s:[], s:[], s:[], s:[]}", "camera_model", "PINHOLE",
+                             "up", up[0], up[1], up[2], "train_filenames", "val_filenames", "test_filenames", "frames");
     enum orl_result result = root ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < scene->photo_count; i++) {
         if (orl_progress_cancelled(progress))

@@ -104,8 +104,8 @@ def main():
     with open(os.path.join(PLACE, "transforms.json"), encoding="utf-8") as stream:
         root = json.load(stream)
     frames = root["frames"]
-    # People hold cameras level: what is up in the pictures becomes Blender's z.
-    up = sum((Matrix(f["transform_matrix"]).to_3x3().col[1] for f in frames), Vector((0, 0, 0)))
+    # People hold cameras level: what is up in the pictures, as EXIF turns them, becomes Blender's z.
+    up = Vector(root["up"])
     place = bpy.data.objects.new("scene", None)
     bpy.context.scene.collection.objects.link(place)
     place.matrix_world = up.rotation_difference(Vector((0, 0, 1))).to_matrix().to_4x4()

@@ -16,6 +16,18 @@ grep -aq scale_2 discs.ply && fail "discs have a third scale"
 grep -aq f_rest_23 discs.ply || fail "--sh 2 writes no harmonics"
 [ -s blender/open_in_blender.py ] || fail "no script for Blender"
 python3 -m py_compile blender/open_in_blender.py || fail "the script for Blender is no Python"
+# Up in the world is what is up in the photographs as their EXIF orientation turns them: 6 has its top on the left.
+cp -r made turned
+jq '.photographs[].orientation = 6' made/scene.json >turned/scene.json
+runs 0 "$oriel" export turned --as blender --out turned-blender
+python3 - <<'PY' || fail "the upward direction is not that of upright photographs"
+import json, math
+for folder, column, sign in ("blender", 1, 1), ("turned-blender", 0, -1):
+    root = json.load(open(folder + "/transforms.json"))
+    up = [sign * sum(frame["transform_matrix"][i][column] for frame in root["frames"]) for i in range(3)]
+    assert all(abs(a / math.hypot(*up) - b) < 1e-5 for a, b in zip(up, root["up"])), (folder, up, root["up"])
+PY
+rm -r turned turned-blender
 exrheader around.exr | grep -q latitude || fail "an environment map that does not say so"
 
 # What is wrong is refused, and leaves nothing.
