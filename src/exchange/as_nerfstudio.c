@@ -64,7 +64,8 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
         json_object_set_new(root, "ply_file_path", json_string("points.ply"));
         result = orl_points_write(log, ORL_PATH(dir, "points.ply"), &scene->points, false, scene->origin);
     }
-    ORL_THEN(result, orl_json_write(log, ORL_PATH(dir, "transforms.json"), root));
+    // Survey coordinates have seven digits ahead of the point, and millimetres count.
+    ORL_THEN(result, orl_json_write_digits(log, ORL_PATH(dir, "transforms.json"), root, ORL_JSON_ALL_DIGITS));
     json_decref(root);
     return result;
 }

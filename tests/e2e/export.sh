@@ -28,6 +28,18 @@ for folder, column, sign in ("blender", 1, 1), ("turned-blender", 0, -1):
     assert all(abs(a / math.hypot(*up) - b) < 1e-5 for a, b in zip(up, root["up"])), (folder, up, root["up"])
 PY
 rm -r turned turned-blender
+# Cameras of survey coordinates keep their places to less than the points' doubles tell apart.
+cp -r made surveyed
+jq '.origin = [512345.25, 40, 5412345.5]' made/scene.json >surveyed/scene.json
+runs 0 "$oriel" export surveyed --as nerfstudio --out far
+python3 - <<'PY' || fail "cameras far from 0 are rounded"
+import json
+near, far = (json.load(open(folder + "/transforms.json"))["frames"] for folder in ("nerfstudio", "far"))
+for a, b in zip(near, far):
+    for row, other, origin in zip(a["transform_matrix"], b["transform_matrix"], (512345.25, 40, 5412345.5)):
+        assert abs(other[3] - origin - row[3]) < 1e-6, (row, other)
+PY
+rm -r surveyed far
 exrheader around.exr | grep -q latitude || fail "an environment map that does not say so"
 
 # What is wrong is refused, and leaves nothing.
