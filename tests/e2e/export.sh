@@ -28,6 +28,21 @@ for folder, column, sign in ("blender", 1, 1), ("turned-blender", 0, -1):
     assert all(abs(a / math.hypot(*up) - b) < 1e-5 for a, b in zip(up, root["up"])), (folder, up, root["up"])
 PY
 rm -r turned turned-blender
+# nerfstudio wants masks of all photographs or of none.
+cp -r made partly
+first=$(jq -r '.photographs[0].name' made/scene.json)
+last=$(jq -r '.photographs[-1].name' made/scene.json)
+mkdir -p partly/masks
+cp "made/images/$first" "partly/masks/$first.png"
+jq '.photographs[0].mask = true' made/scene.json >partly/scene.json
+runs 0 "$oriel" export partly --as nerfstudio --out masked
+jq -e '[.frames[] | has("mask_path")] | all' masked/transforms.json >jq.txt || fail "masks of some photographs"
+cmp -s "made/images/$first" "masked/masks/$first.png" || fail "a mask is not copied"
+python3 - "masked/masks/$last.png" <<'PY' || fail "no mask of the size of a photograph without one"
+import struct, sys
+assert struct.unpack(">IIBB", open(sys.argv[1], "rb").read()[16:26]) == (240, 160, 8, 0)
+PY
+rm -r partly masked
 # Cameras of survey coordinates keep their places to less than the points' doubles tell apart.
 cp -r made surveyed
 jq '.origin = [512345.25, 40, 5412345.5]' made/scene.json >surveyed/scene.json
