@@ -79,6 +79,11 @@ static enum orl_result fill(const struct orl_log *log, const struct orl_progress
         orl_progress_report(progress, "export", (double)(i + 1), (double)scene->photo_count,
                             scene->photos[i].name);
     }
+    // nerfstudio cannot evaluate on an empty list. Without lists it holds photographs out by itself.
+    static const char *const lists[] = {"test_filenames", "val_filenames", "train_filenames"};
+    bool held_out = json_array_size(json_object_get(root, lists[0])) > 0;
+    for (size_t i = 0; !held_out && i < ORL_COUNT(lists); i++)
+        json_object_del(root, lists[i]);
     if (result == ORL_OK && scene->points.count) { // a cloud of none is no start for training
         json_object_set_new(root, "ply_file_path", json_string("points.ply"));
         result = orl_points_write(log, ORL_PATH(dir, "points.ply"), &scene->points, false, scene->origin);

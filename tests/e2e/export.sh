@@ -72,6 +72,9 @@ runs 0 "$oriel" import made/sparse --images made/images --out bare --points none
 runs 0 "$oriel" export bare --as nerfstudio --out bare-cameras
 [ ! -e bare-cameras/points.ply ] && jq -e 'has("ply_file_path") | not' bare-cameras/transforms.json >jq.txt ||
     fail "a cloud of no points is written"
+# Nor are there lists of a split where nothing is held out.
+jq -e '[has("train_filenames", "val_filenames", "test_filenames")] | any | not' bare-cameras/transforms.json >jq.txt ||
+    fail "an empty list of photographs"
 runs 0 "$oriel" import bare-cameras/transforms.json --out bare-back
 
 # All points of levels of detail, also where a scene that is opened holds a sample of them.
