@@ -436,7 +436,14 @@ def nerfstudio_pose(source, place, matrix):
 def add_nerfstudio(source, place, path, entry, split):
     frame, more = Frame(source.root, entry), {}
     pose = nerfstudio_pose(source, place, get(entry, "transform_matrix"))
+    # nerfstudio's reader prefers the terms in a list to those of their own names.
+    listed = frame.find("distortion_params")
+    terms = numbers(listed, 6)
+    if terms:
+        frame.frame = {**entry, **dict(zip(("k1", "k2", "k3", "k4", "p1", "p2"), terms))}
     fisheye = nerfstudio_lens(source, place, frame)
+    if listed is not None and not terms:
+        raise source.bad(place, '"distortion_params" is not k1 k2 k3 k4 p1 p2')
     stated = frame.all(("w", "h"))
     size = [int(x) if 1 <= x <= SIDE_MAX else 0 for x in stated] if stated else None
     fx, fy, angle = frame.number("fl_x"), frame.number("fl_y"), frame.number("camera_angle_x")
@@ -497,7 +504,7 @@ def read_frames(source, split=None):
     """`split`: of all frames; None: as the file says."""
     used = {"frames", "file_path", "transform_matrix", "mask_path", "camera_model", "w", "h", "fl_x", "fl_y", "cx", "cy",
             "k1", "k2", "k3", "k4", "p1", "p2", "camera_angle_x", "camera_angle_y", "is_fisheye", "train_filenames",
-            "val_filenames", "test_filenames", "ply_file_path"}
+            "val_filenames", "test_filenames", "ply_file_path", "distortion_params"}
     root, splits, lists = source.root, set(), Lists(source.root)
     frames = entries(get(root, "frames"))
     for index, entry in enumerate(frames):

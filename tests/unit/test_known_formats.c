@@ -241,6 +241,23 @@ static void takes_lists_as_others_write_them(void **state)
     says(w, "train_filenames has none of the frames");
 }
 
+// The terms of distortion in one list: k1 k2 k3 k4 p1 p2.
+static void takes_distortion_in_a_list(void **state)
+{
+    struct work *w = *state;
+    save(w, "transforms.json", "{" LENS ", \"k1\": 0.9, \"distortion_params\": [0.1, 0.2, 0, 0, 0.3, 0.4], "
+         "\"frames\": [" FRAME("a.jpg") "]}");
+    assert_int_equal(read(w, ""), ORL_OK);
+    check_params(w, 4, (double[]){500, 510, 320, 240, 0.1, 0.2, 0.3, 0.4}, 8);
+    save(w, "transforms.json", "{" LENS ", \"camera_model\": \"OPENCV_FISHEYE\", \"frames\": [{\"file_path\": "
+         "\"a.jpg\", \"distortion_params\": [0.1, 0.2, 0.3, 0.4, 0, 0], " MATRIX "}]}");
+    assert_int_equal(read(w, ""), ORL_OK);
+    check_params(w, 5, (double[]){500, 510, 320, 240, 0.1, 0.2, 0.3, 0.4}, 8);
+    save(w, "transforms.json", "{" LENS ", \"distortion_params\": [0.1, 0.2], \"frames\": [" FRAME("a.jpg") "]}");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "\"distortion_params\" is not k1 k2 k3 k4 p1 p2");
+}
+
 // Processor seconds of the script for frames that are all in a list.
 static double seconds_for_lists(struct work *w, int count)
 {
@@ -693,7 +710,7 @@ int main(void)
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(takes_the_largest_model), TEST(finds_models_in_other_folders), TEST(takes_lists_as_others_write_them),
-        TEST(long_lists_take_little_time),
+        TEST(takes_distortion_in_a_list), TEST(long_lists_take_little_time),
         TEST(knows_fisheye_lenses_by_all_spellings), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
         TEST(reads_names_of_other_systems), TEST(takes_what_transforms_state),
         TEST(names_pictures_by_what_tells_them_apart), TEST(reads_blender_sets),
