@@ -415,6 +415,9 @@ def nerfstudio_lens(source, place, frame):
     if not fisheye and upper not in BROWN:
         raise source.bad(place, f"its camera_model, {model[:60]}, is not read: Oriel reads PINHOLE, OPENCV, RADIAL and "
                                 "OPENCV_FISHEYE; panoramas must be cut into flat views")
+    for key in ("latlong", "equirectangular", "orthographic", "ftheta_p0"):  # instant-ngp's, whatever their value
+        if frame.find(key) is not None:
+            raise source.bad(place, f"its lens, {key}, is not read: panoramas must be cut into flat views")
     for key in ("p1", "p2") if fisheye else ("k4",):
         if frame.number(key):
             raise source.bad(place, f"{key} of its lens is not read: undistort the pictures with the program that "

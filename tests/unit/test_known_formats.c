@@ -258,6 +258,18 @@ static void takes_distortion_in_a_list(void **state)
     says(w, "\"distortion_params\" is not k1 k2 k3 k4 p1 p2");
 }
 
+// instant-ngp's keys of lenses that are not flat.
+static void refuses_lenses_of_instant_ngp(void **state)
+{
+    struct work *w = *state;
+    save(w, "transforms.json", "{" LENS ", \"equirectangular\": true, \"frames\": [" FRAME("a.jpg") "]}");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "camera 0 (a.jpg): its lens, equirectangular, is not read");
+    save(w, "transforms.json", "{" LENS ", \"frames\": [{\"file_path\": \"a.jpg\", \"ftheta_p0\": 0, " MATRIX "}]}");
+    assert_int_equal(read(w, ""), ORL_ERR_FORMAT);
+    says(w, "camera 0 (a.jpg): its lens, ftheta_p0, is not read");
+}
+
 // Processor seconds of the script for frames that are all in a list.
 static double seconds_for_lists(struct work *w, int count)
 {
@@ -710,7 +722,7 @@ int main(void)
 #define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
     const struct CMUnitTest tests[] = {
         TEST(takes_the_largest_model), TEST(finds_models_in_other_folders), TEST(takes_lists_as_others_write_them),
-        TEST(takes_distortion_in_a_list), TEST(long_lists_take_little_time),
+        TEST(takes_distortion_in_a_list), TEST(refuses_lenses_of_instant_ngp), TEST(long_lists_take_little_time),
         TEST(knows_fisheye_lenses_by_all_spellings), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
         TEST(reads_names_of_other_systems), TEST(takes_what_transforms_state),
         TEST(names_pictures_by_what_tells_them_apart), TEST(reads_blender_sets),
