@@ -1195,6 +1195,8 @@ def read_file(out, path, centre):
         raise Refused(f"{path}: no such file or folder", "ORL_ERR_NOT_FOUND")
     if os.path.splitext(base)[1] in (".json", ".sfm"):
         root = read_json(path)
+        if get(root, "sfm_data_version") is not None:  # it has "views" and "intrinsics", as Meshroom's has
+            raise Refused(f"{path}: OpenMVG's cameras are not read: openMVG_main_openMVG2Colmap makes a COLMAP model")
         name, read = json_format(root)
     else:
         for name, files in formats():

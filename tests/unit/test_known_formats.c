@@ -486,6 +486,15 @@ static void reads_meshroom(void **state)
     check_params(w, 1, (double[]){500, 500, 320, 240}, 4);
 }
 
+static void names_openmvg(void **state)
+{
+    struct work *w = *state;
+    save(w, "sfm_data.json", "{\"sfm_data_version\": \"0.3\", \"root_path\": \"\", \"views\": [{\"key\": 0}], "
+         "\"intrinsics\": [], \"extrinsics\": []}");
+    assert_int_equal(read(w, "sfm_data.json"), ORL_ERR_FORMAT);
+    says(w, "sfm_data.json: OpenMVG's cameras are not read: openMVG_main_openMVG2Colmap makes");
+}
+
 #define XML_OF(type, sensor, cameras) "<?xml version=\"1.0\"?><document><chunk><sensors>" \
     "<sensor id=\"3\" type=\"frame\"><resolution width=\"640\" height=\"480\"/>" \
     "<calibration class=\"initial\"><f>1</f></calibration>" \
@@ -726,7 +735,8 @@ int main(void)
         TEST(knows_fisheye_lenses_by_all_spellings), TEST(reads_models_without_points), TEST(reads_images_of_one_line),
         TEST(reads_names_of_other_systems), TEST(takes_what_transforms_state),
         TEST(names_pictures_by_what_tells_them_apart), TEST(reads_blender_sets),
-        TEST(reads_lists_with_spaces), TEST(refuses_utf16), TEST(reads_opensfm), TEST(reads_meshroom), TEST(reads_metashape), TEST(reads_realityscan), TEST(reads_nvm),
+        TEST(reads_lists_with_spaces), TEST(refuses_utf16), TEST(reads_opensfm),
+        TEST(reads_meshroom), TEST(names_openmvg), TEST(reads_metashape), TEST(reads_realityscan), TEST(reads_nvm),
         TEST(reads_llff), TEST(reads_telephones),
         TEST(takes_a_far_origin_off), TEST(reads_far_points_and_meshes), TEST(lists_formats),
     };
