@@ -82,32 +82,51 @@ static bool set_point(struct orl_points *points, size_t i, const double values[R
     return true;
 }
 
-// The factor that brings colours to 255 at white. Programs that convert from LAS store 16 bits, or 8
-// bits in properties of 16, and others floats of either range, so the file's greatest value decides.
+// Programs that convert from LAS store 16 bits, or 8 bits in properties of 16, and others floats of either
+// range, so the file's greatest value decides what white is, unless there is no doubt.
+static bool is_white_known(const struct orl_ply_element *vertex, const int property[ROLE_COUNT])
+{
+    return property[RED] < 0 || vertex->properties[property[RED]].type == ORL_PLY_UINT8;
+}
+
+// Raises *greatest to the greatest colour of the next records.
+static enum orl_result find_greatest(struct orl_ply *ply, const struct orl_ply_element *vertex,
+                                     const int property[ROLE_COUNT], double *greatest)
+{
+    double record[ORL_PLY_PROPERTIES_MAX];
+    for (uint64_t i = 0; i < vertex->count; i++) {
+        ORL_TRY(orl_ply_record(ply, vertex, record, -1, NULL));
+        for (int role = RED; role <= BLUE; role++)
+            if (property[role] >= 0 && isfinite(record[property[role]]))
+                *greatest = fmax(*greatest, record[property[role]]);
+    }
+    return ORL_OK;
+}
+
+// The factor that brings colours to 255 at white.
+static double scale_of(const struct orl_ply_element *vertex, const int property[ROLE_COUNT], double greatest)
+{
+    // Floats may exceed white.
+    bool unit = orl_ply_is_float(vertex, property[RED]) && greatest < 16;
+    return unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
+}
+
 // Leaves the reader where it was.
 static enum orl_result find_color_scale(struct orl_ply *ply, const struct orl_ply_element *vertex,
                                         const int property[ROLE_COUNT], double *scale)
 {
-    double record[ORL_PLY_PROPERTIES_MAX], greatest = 0;
+    double greatest = 0;
     const size_t start = ply->at;
-    enum orl_result result = ORL_OK;
     *scale = 1;
-    if (property[RED] < 0 || vertex->properties[property[RED]].type == ORL_PLY_UINT8)
+    if (is_white_known(vertex, property))
         return ORL_OK;
-    for (uint64_t i = 0; i < vertex->count && result == ORL_OK; i++) {
-        result = orl_ply_record(ply, vertex, record, -1, NULL);
-        for (int role = RED; result == ORL_OK && role <= BLUE; role++)
-            if (property[role] >= 0 && isfinite(record[property[role]]))
-                greatest = fmax(greatest, record[property[role]]);
-    }
+    ORL_TRY(find_greatest(ply, vertex, property, &greatest));
     ply->at = start;
-    // Floats may exceed white.
-    bool unit = orl_ply_is_float(vertex, property[RED]) && greatest < 16;
-    *scale = unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
-    return result;
+    *scale = scale_of(vertex, property, greatest);
+    return ORL_OK;
 }
 
-// color_scale: see find_color_scale.
+// color_scale: see scale_of.
 static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_element *vertex,
                                    const int property[ROLE_COUNT], const double origin[3],
                                    double color_scale, struct orl_points *points)
@@ -197,6 +216,7 @@ struct orl_point_stream {
     size_t capacity;    // of ply.data, in bytes
     uint64_t next;      // record
     int property[ROLE_COUNT];
+    double color_scale; // see scale_of
 };
 
 // The file must hold all the records that its header claims.
@@ -208,6 +228,40 @@ static enum orl_result check_length(struct orl_point_stream *s)
         return orl_file_failed(s->ply.log, s->ply.path);
     if (vertex->count > ((uint64_t)end - s->records_at) / vertex->least)
         return orl_ply_bad(&s->ply, "the file ends ahead of the last vertex");
+    return orl_point_stream_seek(s, 0);
+}
+
+// Loads the next `most` records, or as many as are left. *part: the vertices, with their number as the count.
+static enum orl_result load_part(struct orl_point_stream *s, size_t most, struct orl_ply_element *part)
+{
+    *part = s->ply.elements[0];
+    uint64_t left = s->next < part->count ? part->count - s->next : 0;
+    part->count = left < most ? left : most;
+    size_t bytes = (size_t)part->count * part->least;
+    ORL_TRY(orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1));
+    if (fread(s->ply.data, 1, bytes, s->file) != bytes)
+        return orl_fail(s->ply.log, ORL_ERR_IO, "%s: cannot read record %llu", s->ply.path,
+                        (unsigned long long)s->next);
+    s->ply.size = bytes;
+    s->ply.at = 0;
+    s->next += part->count;
+    return ORL_OK;
+}
+
+// Takes a pass over the whole file where the type of the colours leaves open what white is.
+static enum orl_result find_stream_scale(struct orl_point_stream *s)
+{
+    enum { AT_ONCE = 1 << 16 };
+    struct orl_ply_element part = s->ply.elements[0];
+    double greatest = 0;
+    s->color_scale = 1;
+    if (is_white_known(&part, s->property))
+        return ORL_OK;
+    do {
+        ORL_TRY(load_part(s, AT_ONCE, &part));
+        ORL_TRY(find_greatest(&s->ply, &part, s->property, &greatest));
+    } while (part.count);
+    s->color_scale = scale_of(&part, s->property, greatest);
     return orl_point_stream_seek(s, 0);
 }
 
@@ -227,6 +281,7 @@ enum orl_result orl_point_stream_open(const struct orl_log *log, const char *pat
         *total = s->ply.elements[0].count;
         result = check_length(s);
     }
+    ORL_THEN(result, find_stream_scale(s));
     if (result != ORL_OK)
         orl_point_stream_close(out);
     return result;
@@ -253,18 +308,9 @@ enum orl_result orl_point_stream_seek(struct orl_point_stream *s, uint64_t recor
 enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
                                       struct orl_points *points, size_t *read)
 {
-    struct orl_ply_element part = s->ply.elements[0];
-    uint64_t left = s->next < part.count ? part.count - s->next : 0;
-    *read = left < most ? (size_t)left : most;
-    part.count = *read;
-    size_t bytes = *read * part.least;
-    ORL_TRY(orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1));
-    if (fread(s->ply.data, 1, bytes, s->file) != bytes)
-        return orl_fail(s->ply.log, ORL_ERR_IO, "%s: cannot read record %llu", s->ply.path,
-                        (unsigned long long)s->next);
-    s->ply.size = bytes;
-    s->ply.at = 0;
-    s->next += *read;
-    double scale = s->property[RED] >= 0 ? orl_ply_color_scale(&part, s->property[RED]) : 1;
-    return read_points(&s->ply, &part, s->property, nowhere, scale, points);
+    struct orl_ply_element part;
+    *read = 0;
+    ORL_TRY(load_part(s, most, &part));
+    *read = (size_t)part.count;
+    return read_points(&s->ply, &part, s->property, nowhere, s->color_scale, points);
 }

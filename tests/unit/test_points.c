@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include "oriel/points.h"
+#include "scene/point_stream.h"
 #include "test.h"
 
 static void save(const char *path, const void *data, size_t size)
@@ -105,6 +106,45 @@ static void scales_colours_of_other_types(void **state)
         assert_int_equal(points.count, 1);
         assert_memory_equal(points.color[0], want, 3);
         assert_float_equal(points.position[0][2], 3, 0);
+        orl_points_finish(&points);
+    }
+    test_dir_remove(dir);
+}
+
+// Also where it is read a part at a time: the greatest value is that of the file, in its last part here.
+static void scales_colours_of_parts(void **state)
+{
+    (void)state;
+    static const char header[] = "ply\nformat binary_little_endian 1.0\nelement vertex 2\n"
+                                 "property float x\nproperty float y\nproperty float z\n"
+                                 "property ushort red\nproperty ushort green\nproperty ushort blue\nend_header\n";
+    const float position[3] = {1, 2, 3};
+    const uint8_t want[2][3] = {{128, 1, 0}, {255, 128, 0}};
+    char *dir = test_dir_make(), path[4096];
+    snprintf(path, sizeof path, "%s/points.ply", dir);
+    for (unsigned factor = 1; factor <= 257; factor += 256) { // 8 or 16 bits
+        uint8_t file[512];
+        size_t size = sizeof header - 1, read;
+        uint64_t total;
+        struct orl_point_stream *stream;
+        struct orl_points points;
+        memcpy(file, header, size);
+        for (int i = 0; i < 2; i++) {
+            memcpy(file + size, position, sizeof position);
+            size += sizeof position;
+            for (int c = 0; c < 3; c++, size += 2)
+                memcpy(file + size, &(uint16_t){(uint16_t)(factor * want[i][c])}, 2);
+        }
+        save(path, file, size);
+        assert_int_equal(orl_points_init(NULL, &points, 1), ORL_OK);
+        assert_int_equal(orl_point_stream_open(NULL, path, &stream, &total), ORL_OK);
+        assert_int_equal(total, 2);
+        for (int i = 0; i < 2; i++) {
+            assert_int_equal(orl_point_stream_next(stream, 1, &points, &read), ORL_OK);
+            assert_int_equal(points.count, 1);
+            assert_memory_equal(points.color[0], want[i], 3);
+        }
+        orl_point_stream_close(&stream);
         orl_points_finish(&points);
     }
     test_dir_remove(dir);
@@ -309,7 +349,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trips),
         cmocka_unit_test(reads_ascii),
-        cmocka_unit_test(scales_colours_of_other_types),
+        cmocka_unit_test(scales_colours_of_other_types), cmocka_unit_test(scales_colours_of_parts),
         cmocka_unit_test(says_that_there_are_no_colours),
         cmocka_unit_test(refuses_bad_headers),
         cmocka_unit_test(refuses_truncated),
