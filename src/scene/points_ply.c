@@ -172,9 +172,10 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
 static enum orl_result find_vertices(struct orl_ply *ply, const struct orl_ply_element *vertex,
                                      int property[ROLE_COUNT])
 {
-    if (vertex->lists)
-        return orl_ply_bad(ply, "vertices with lists are not supported");
     find_roles(vertex, property);
+    for (int role = 0; role < ROLE_COUNT; role++)
+        if (property[role] >= 0 && vertex->properties[property[role]].list)
+            return orl_ply_bad(ply, "lists are not supported where a point needs a number");
     if (property[X] < 0 || property[Y] < 0 || property[Z] < 0)
         return orl_ply_bad(ply, "the vertices lack x, y or z");
     return ORL_OK;
@@ -271,10 +272,10 @@ enum orl_result orl_point_stream_open(const struct orl_log *log, const char *pat
     struct orl_point_stream *s = *out = orl_array(log, 1, sizeof *s);
     ORL_TRY_MEMORY(s);
     enum orl_result result = orl_ply_open_header(log, path, &s->ply, &s->file);
-    if (result == ORL_OK && (s->ply.ascii || !s->ply.element_count ||
+    if (result == ORL_OK && (s->ply.ascii || !s->ply.element_count || s->ply.elements[0].lists ||
                              strcmp(s->ply.elements[0].name, "vertex") != 0))
         result = orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: only a binary PLY whose vertices come "
-                          "first can be read a part at a time", path);
+                          "first and have no lists can be read a part at a time", path);
     ORL_THEN(result, find_vertices(&s->ply, &s->ply.elements[0], s->property));
     if (result == ORL_OK) {
         s->records_at = s->ply.at;

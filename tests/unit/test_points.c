@@ -80,6 +80,27 @@ static void reads_ascii(void **state)
     test_dir_remove(dir);
 }
 
+// OpenMVS writes which views see a point as lists between the numbers.
+static void skips_lists_of_vertices(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make(), path[4096];
+    static const char text[] = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                               "property float z\nproperty list uchar uint view_indices\n"
+                               "property list uchar float view_weights\nproperty float nx\nproperty float ny\n"
+                               "property float nz\nend_header\n1 2 3 2 0 5 2 0.5 1 0 0 2\n4 5 6 0 0 0 1 0\n";
+    struct orl_points points;
+    snprintf(path, sizeof path, "%s/points.ply", dir);
+    save(path, text, sizeof text - 1);
+    assert_int_equal(orl_points_read(NULL, path, NULL, &points), ORL_OK);
+    assert_int_equal(points.count, 2);
+    const float positions[2][3] = {{1, 2, 3}, {4, 5, 6}}, normals[2][3] = {{0, 0, 1}, {0, 1, 0}};
+    assert_memory_equal(points.position, positions, sizeof positions);
+    assert_memory_equal(points.normal, normals, sizeof normals);
+    orl_points_finish(&points);
+    test_dir_remove(dir);
+}
+
 // By the greatest value of the file, whatever the type is called, under the names that are in use.
 static void scales_colours_of_other_types(void **state)
 {
@@ -349,6 +370,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(round_trips),
         cmocka_unit_test(reads_ascii),
+        cmocka_unit_test(skips_lists_of_vertices),
         cmocka_unit_test(scales_colours_of_other_types), cmocka_unit_test(scales_colours_of_parts),
         cmocka_unit_test(says_that_there_are_no_colours),
         cmocka_unit_test(refuses_bad_headers),
