@@ -88,7 +88,7 @@ def add_camera(frame, root):
     data.sensor_fit, data.sensor_width = "HORIZONTAL", SENSOR_MM
     data.lens = frame["fl_x"] * SENSOR_MM / width
     data.shift_x = (width / 2 - frame["cx"]) / width
-    data.shift_y = (frame["cy"] - height / 2) / width
+    data.shift_y = (frame["cy"] - height / 2) / width * frame["fl_x"] / frame["fl_y"]  # in widths, too
     data.show_background_images = True
     behind = data.background_images.new()
     behind.image = bpy.data.images.load(path)
@@ -114,6 +114,9 @@ def main():
         add_points(read_points(os.path.join(PLACE, root["ply_file_path"])), place)
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = frames[0]["w"], frames[0]["h"]
+    # A camera has one focal length: where the photographs have two, pixels are not square. Neither side is below 1.
+    ratio = frames[0]["fl_x"] / frames[0]["fl_y"]
+    render.pixel_aspect_x, render.pixel_aspect_y = max(1, 1 / ratio), max(1, ratio)
     bpy.context.scene.camera = cameras[0]
     bpy.context.scene.view_settings.view_transform = "Standard"  # colours as in the photographs
 

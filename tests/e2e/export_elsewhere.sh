@@ -28,6 +28,20 @@ PY
     first=blender/$(jq -r '.frames[0].file_path' blender/transforms.json)
     same=$(psnr first.png -alpha off "$first")
     awk -v db="$same" 'BEGIN { exit !(db >= 10.5) }' || fail "Blender sees something else: $same dB"
+    # Two focal lengths, and a principal point beside the middle: a point of the world is where the photograph has it.
+    cp -r blender oblong
+    jq '.frames[].fl_y *= 1.25 | .frames[].cy += 20' blender/transforms.json >oblong/transforms.json
+    cat >project.py <<'PY'
+import json, bpy
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
+frame, scene = json.load(open("oblong/transforms.json"))["frames"][0], bpy.context.scene
+bpy.context.view_layer.update()
+at = world_to_camera_view(scene, scene.camera, scene.camera.matrix_world @ Vector((0.1, 0.2, -1)))
+x, y = frame["cx"] + 0.1 * frame["fl_x"], frame["cy"] - 0.2 * frame["fl_y"]
+assert abs(at.x * frame["w"] - x) < 0.1 and abs((1 - at.y) * frame["h"] - y) < 0.1, (at, x, y)
+PY
+    runs 0 timeout 600 blender --background --python-exit-code 3 --python oblong/open_in_blender.py --python project.py
 else
     echo "blender is not installed: not checked with it"
 fi
