@@ -59,7 +59,8 @@ runs 0 "$oriel" eval ws --method points --divide 2 --views 2 --json eval.json --
 for field in psnr_db ssim flip crumbs completeness; do
     a=$(sed -n "s/.*\"$field\": \([0-9.]*\),*/\1/p" eval.json | tail -n 1) # its mean
     b=$(sed -n "s/.*\"$field\": \([0-9.]*\),*/\1/p" report/rows/ws/points.json | tail -n 2 | head -n 1)
-    awk -v a="$a" -v b="$b" 'BEGIN { exit !(a > 0 && (a - b) ^ 2 < 1e-8) }' ||
+    # Pictures this small may have no crumbs.
+    awk -v a="$a" -v b="$b" 'BEGIN { exit !(a != "" && b != "" && (a - b) ^ 2 < 1e-8) }' ||
         fail "$field is $a by eval, $b by chart"
 done
 
