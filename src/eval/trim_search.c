@@ -613,15 +613,16 @@ static enum orl_result start(struct trim_search *s)
     return ORL_OK;
 }
 
-// Fits the method's options at half the size, where a frame takes a quarter of the time, and takes them if they are
-// better by the targets that decide.
+// Fits the method's options at half the size, where a frame takes a quarter of the time, or at the least one that a
+// search compares at, and takes them if they are better by the targets that decide.
 static enum orl_result tune(struct trim_search *s)
 {
     struct orl_search search;
     bool taken;
     const struct orl_trim_params *p = s->params;
+    const int divide = TUNED_DIVIDE * p->size_divide;
     const struct orl_search_params params = {
-        .size_divide = TUNED_DIVIDE * p->size_divide, .views = TUNED_VIEWS,
+        .size_divide = divide < ORL_SEARCH_DIVIDE_MAX ? divide : ORL_SEARCH_DIVIDE_MAX, .views = TUNED_VIEWS,
         .gain_db = tuned_gain * p->tolerance_db, .budget_s = tuned_time * p->budget_s,
         .progress = p->progress};
     ORL_TRY(orl_search_run(s->gpu, orl_trim_model_of(s->now)->renderer, s->scene, &params, p->start, NULL, &search));

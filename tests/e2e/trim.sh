@@ -37,7 +37,7 @@ awk '$1 == "trimmed" { exit !($4 <= 1.2) }' stdout.txt || fail "more than the bu
 runs 2 "${trim[@]}" --out hurried --max-bytes 0.001 --budget 0.001
 grep -q "before --budget ran out" stderr.txt || fail "does not say that the time was too short"
 [ -e hurried ] && fail "writes a scene that is larger than asked for"
-runs 0 "${trim[@]}" --out clean --budget 0.001 --json -
+runs 0 "${trim[@]}" --out clean --budget 0.001 --size-divide 16 --json - # options, too, are compared at 1/16
 jq -e .steps stdout.txt >/dev/null || fail "prints more than JSON"
 
 # What is wrong is said, and nothing is lost.
