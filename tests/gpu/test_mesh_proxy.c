@@ -166,6 +166,35 @@ static void a_scene_without_mesh_says_so(void **state)
     teardown(&f);
 }
 
+// A time step whose mesh is not there fails in every frame, and the next one that has a mesh is drawn.
+static void a_mesh_that_was_not_there_is_asked_for_again(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_empty(&f, 4);
+    write_mesh(f.dir, false);
+    struct orl_renderer *renderer;
+    struct orl_render_params params = orl_method_find(NULL, "points")->params;
+    struct orl_view view = view_of();
+    struct orl_frame frame;
+    char *path = orl_path_join(NULL, f.dir, "mesh.ply");
+    assert_int_equal(orl_render_params_set(NULL, &params, "proxy=mesh"), ORL_OK);
+    add_photo(&f, view, red);
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, NULL), ORL_OK);
+    assert_int_equal(remove(path), 0);
+    f.scene.frame++;
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, NULL), ORL_ERR_NOT_FOUND);
+    write_mesh(f.dir, false);
+    assert_int_equal(orl_renderer_draw(renderer, &view, &params, NULL, &frame), ORL_OK);
+    assert_float_equal(frame.depth.f32[H / 2 * W + W / 2], 2, 1e-3);
+    orl_frame_finish(&frame);
+    orl_renderer_destroy(&renderer);
+    free(path);
+    teardown(&f);
+}
+
 // Two strays of two hundred vertices, far away, move neither the box nor the centre.
 static void the_extent_leaves_strays_out(void **state)
 {
@@ -205,6 +234,7 @@ int main(void)
         cmocka_unit_test(every_method_paints_a_mesh),
         cmocka_unit_test(points_shows_the_colours_of_vertices),
         cmocka_unit_test(a_scene_without_mesh_says_so),
+        cmocka_unit_test(a_mesh_that_was_not_there_is_asked_for_again),
     };
     int failed = cmocka_run_group_tests_name("mesh proxy", tests, NULL, NULL);
     orl_gpu_destroy(&gpu);

@@ -10,6 +10,8 @@
 #include "render/proxy/mesh_proxy.h"
 #include "shared/render_blocks.h"
 
+enum { NO_TIME_STEP = -2 }; // a scene's are from -1 on
+
 void orl_mesh_vertices(const void *handle, const struct orl_scene *scene,
                        const float (**out)[3], size_t *count)
 {
@@ -63,20 +65,23 @@ void orl_mesh_state_finish(struct orl_gpu *gpu, void *handle)
     orl_mesh_finish(&state->mesh);
 }
 
+// After a failure the state has no mesh, and the next frame asks for one again.
 static enum orl_result load(struct orl_gpu *gpu, const struct orl_scene *scene,
                             struct mesh_state *state)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     const struct orl_file_path path = orl_scene_mesh_path(scene);
     orl_mesh_state_finish(gpu, state);
-    state->time_step = scene->frame;
+    state->time_step = NO_TIME_STEP;
     if (!orl_path_is_file(path.text))
         return orl_fail(log, ORL_ERR_NOT_FOUND,
                         "%s: not there; --mesh of oriel prepare or oriel import makes one%s", path.text,
                         scene->points.count ? "" : ". The scene has no points, either: --points densify or --points FILE "
                                                    "of oriel import gives it some");
     ORL_TRY(orl_mesh_read(log, path.text, NULL, &state->mesh));
-    return orl_mesh_state_upload(gpu, state);
+    ORL_TRY(orl_mesh_state_upload(gpu, state));
+    state->time_step = scene->frame;
+    return ORL_OK;
 }
 
 static enum orl_result init(struct orl_gpu *gpu, const struct orl_scene *scene, size_t max_bytes, void *state)
