@@ -590,6 +590,7 @@ enum orl_result orl_photos_require_mask(const struct frame *frame, size_t photo)
     enum orl_result result = orl_photos_array(frame->gpu, photos, GL_R8, "photograph masks", &photos->mask);
     ORL_THEN(result, make_alpha(frame, photo, &alpha));
     if (result == ORL_OK) {
+        clear_beside(alpha.width, alpha.height, photos->mask, state->slot);
         orl_tex_write_layer(photos->mask, state->slot, alpha.width, alpha.height, GL_RED,
                             GL_UNSIGNED_BYTE, alpha.data);
         orl_tex_make_mipmaps(photos->mask, state->slot);
