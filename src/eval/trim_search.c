@@ -638,7 +638,9 @@ enum orl_result orl_trim_search(struct trim_search *s)
         ORL_TRY(tune(s));
     ORL_TRY(climb(s));
     ORL_TRY(make_faster(s));
-    return orl_trim_confirm(s);
+    ORL_TRY(orl_trim_confirm(s));
+    bool slow; // what was timed last had the steps that are taken back now
+    return s->trim->undone ? time_whole(s, &slow) : ORL_OK;
 }
 
 void orl_trim_search_finish(struct trim_search *s)
