@@ -82,8 +82,7 @@ void orl_guess_finish(struct orl_gpu *gpu, struct guess *guess);
 bool orl_guess_applies(const struct frame *frame);
 // Moves the estimated background depth to where few photographs see past it and the others agree,
 // from the estimate to infinity. `choice`: the dispatch of shaders/gather/choose.comp, with the
-// parameters `block`, that has run. It runs again for tiles with estimated depth, since other
-// photographs see the new depths best.
+// parameters `block`, that has run. Its lists stay as they are.
 void orl_guess_depth(const struct frame *frame, const struct orl_dispatch *choice,
                      const struct gather_block *block);
 
