@@ -95,15 +95,14 @@ enum { AMPLIFY = 4 };
 static void print_stem(const struct orl_scene *scene, size_t photo, char stem[ORL_PATH_SIZE])
 {
     orl_path_print(stem, "", "%s", scene->photos[photo].name);
-    char *dot = strrchr(stem, '.');
-    if (dot && dot != stem && !strchr(dot, '/')) {
-        size_t alike = 0;
-        size_t length = (size_t)(dot - stem) + 1;
-        for (size_t i = 0; i < scene->photo_count; i++)
-            alike += strncmp(scene->photos[i].name, stem, length) == 0;
-        if (alike == 1)
-            *dot = '\0';
+    const size_t length = orl_path_stem(stem);
+    size_t alike = 0;
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        const char *other = scene->photos[i].name;
+        alike += orl_path_stem(other) == length && strncmp(other, stem, length) == 0;
     }
+    if (alike == 1 && length > 0)
+        stem[length] = '\0';
     for (char *slash = stem; (slash = strchr(slash, '/'));)
         *slash = '_';
 }
