@@ -57,7 +57,7 @@ bool orl_scene_middle(const struct orl_scene *scene, double middle[3])
 
 // --- the room ---
 
-static const double SHELL = 2; // radius, in distances of the farthest photograph
+static const double SHELL = 2; // radius, in distances of the farthest photograph that is not held out
 
 void orl_room_measure(const struct orl_scene *scene, const double low[3], const double high[3],
                       double middle[3], double half[3])
@@ -72,6 +72,8 @@ void orl_room_measure(const struct orl_scene *scene, const double low[3], const 
     }
     for (size_t i = 0; !room->known && i < scene->photo_count; i++) {
         double eye[3], squares = 0;
+        if (scene->photos[i].test)
+            continue;
         orl_pose_centre(&scene->photos[i].view.cam_from_world, eye);
         for (int k = 0; k < 3; k++)
             squares += (eye[k] - middle[k]) * (eye[k] - middle[k]);

@@ -14,8 +14,8 @@ bool orl_scene_mean_up(const struct orl_scene *scene, double up[3]);
 bool orl_scene_middle(const struct orl_scene *scene, double middle[3]);
 
 // Middle and half sides of the scene's room, world. Where it is not known, of a shell: its middle is that
-// of the box from `low` to `high`, and its radius, twice the distance of the farthest photograph, is
-// given thrice.
+// of the box from `low` to `high`, and its radius, twice the distance of the farthest photograph that is
+// not held out, is given thrice.
 void orl_room_measure(const struct orl_scene *scene, const double low[3], const double high[3],
                       double middle[3], double half[3]);
 

@@ -91,9 +91,31 @@ static void circles_around_what_lies_on_its_side(void **state)
     orl_path_finish(&path);
 }
 
+// Where the room is not known, a photograph that is held out has no part in the shell that stands for it.
+static void a_shell_is_as_large_as_the_photographs_want(void **state)
+{
+    (void)state;
+    struct orl_photo photos[3];
+    struct orl_scene scene = {.photos = photos, .photo_count = 3};
+    const double low[3] = {0, -1, -1}, high[3] = {2, 1, 1}, at[3] = {-3, 3, 100};
+    double middle[3], half[3];
+    memset(photos, 0, sizeof photos);
+    for (int i = 0; i < 3; i++) {
+        photos[i].view = stored;
+        orl_pose_set_centre(&photos[i].view.cam_from_world, (const double[3]){at[i], 0, 0});
+        photos[i].test = i == 2;
+    }
+    orl_room_measure(&scene, low, high, middle, half);
+    for (int k = 0; k < 3; k++) {
+        assert_float_equal(middle[k], k == 0, 1e-9);
+        assert_float_equal(half[k], 8, 1e-9); // the first is 4 away
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(turns_views),
-                                       cmocka_unit_test(circles_around_what_lies_on_its_side)};
+                                       cmocka_unit_test(circles_around_what_lies_on_its_side),
+                                       cmocka_unit_test(a_shell_is_as_large_as_the_photographs_want)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
