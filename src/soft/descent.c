@@ -49,6 +49,12 @@ size_t orl_soft_descent_bytes(size_t splats, size_t entries, int width, int heig
 static enum orl_result check_memory(struct orl_gpu *gpu, const struct orl_soft_descent *d, const struct orl_camera *c)
 {
     const struct orl_soft_raster *r = &d->raster;
+    // Gradients of all entries are one buffer, whatever the limit of memory.
+    if (r->lists.entries > (size_t)orl_gpu_caps(gpu)->max_buffer_texels / ORL_SOFT_SHARE_VEC4S)
+        return orl_fail(orl_gpu_log(gpu), ORL_ERR_GPU,
+                        "refine: %zu splats at %dx%d are in %zu places of the lists of this view, more than a buffer of "
+                        "this device holds: give fewer --splats, or a larger --size-divide", r->count, c->width,
+                        c->height, r->lists.entries);
     size_t bytes = orl_soft_descent_bytes(r->count, r->lists.entries, c->width, c->height);
     if (!d->max_bytes || bytes <= d->max_bytes)
         return ORL_OK;
