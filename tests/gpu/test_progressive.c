@@ -183,7 +183,7 @@ static void test_little_memory(void **state)
     teardown(&f);
 }
 
-// A photograph that is not there is left out; the others paint.
+// A photograph that is not there is left out; the others paint. With the next time step it is asked for again.
 static void test_missing_file(void **state)
 {
     (void)state;
@@ -191,14 +191,23 @@ static void test_missing_file(void **state)
     struct orl_renderer *renderer;
     const struct orl_render_params *params = &orl_method_find(NULL, "oriel")->params;
     setup_green(&f);
+    const size_t one = 3 * SIDE * SIDE; // bytes of a photograph
     char *path = strdup(orl_scene_file(&f.scene, 1, ORL_FILE_PHOTO).text);
+    char *other = strdup(orl_scene_file(&f.scene, 0, ORL_FILE_PHOTO).text);
     assert_int_equal(unlink(path), 0);
-    free(path);
     assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
     struct orl_frame frame = draw_to_the_end(renderer, look_from(0, 0, 0, SIDE, SIDE), params);
     assert_float_equal(color_at(&frame, SIDE / 2, SIDE / 2)[1], 1, 0.01f);
+    assert_int_equal(orl_renderer_uploaded(renderer), (PHOTOS - 1) * one);
+    orl_frame_finish(&frame);
+    assert_int_equal(orl_file_copy(NULL, other, path), ORL_OK);
+    f.scene.frame++;
+    frame = draw_to_the_end(renderer, look_from(0, 0, 0, SIDE, SIDE), params);
+    assert_int_equal(orl_renderer_uploaded(renderer), (2 * PHOTOS - 1) * one);
     orl_frame_finish(&frame);
     orl_renderer_destroy(&renderer);
+    free(path);
+    free(other);
     teardown(&f);
 }
 

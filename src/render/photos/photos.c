@@ -201,7 +201,7 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
     photos->states = orl_array(log, scene->photo_count, sizeof *photos->states);
     ORL_TRY_MEMORY(photos->states);
     for (size_t i = 0; i < scene->photo_count; i++) {
-        photos->states[i].usable = use ? use[i] : !scene->photos[i].test;
+        photos->states[i].usable = photos->states[i].asked = use ? use[i] : !scene->photos[i].test;
         photos->states[i].slot = -1;
     }
     find_exposures(photos);
@@ -293,8 +293,10 @@ void orl_photos_follow_time_step(struct photos *photos)
     if (photos->time_step == photos->scene->frame)
         return;
     orl_photo_loader_destroy(&photos->loader); // what it has read is of the other time step
-    for (size_t i = 0; i < photos->scene->photo_count; i++)
+    for (size_t i = 0; i < photos->scene->photo_count; i++) {
         evict(&photos->states[i]);
+        photos->states[i].usable = photos->states[i].asked;
+    }
     photos->time_step = photos->scene->frame;
 }
 

@@ -10,7 +10,8 @@
 // Where a photograph is stored. All photographs share two texture arrays. A slot is one layer of
 // both, and holds the photograph in its top left corner.
 struct photo_state {
-    bool usable;
+    bool asked;  // the renderer's parameters ask for it
+    bool usable; // they do, and its file of this time step is not known to be damaged
     int slot; // layer of the arrays; -1: not resident
     bool has_color, has_mask, has_soft;
     int depth_divide;   // its depth has 1/depth_divide of the size of depth_camera; 0: no depth
@@ -68,7 +69,8 @@ enum orl_result orl_photos_init(struct orl_gpu *gpu, const struct orl_scene *sce
                                 const struct orl_renderer_params *params, size_t budget_bytes,
                                 struct photos *photos);
 void orl_photos_finish(struct orl_gpu *gpu, struct photos *photos); // also after a failure of init
-// Evicts all photographs if the scene shows another time step than they do.
+// Evicts all photographs if the scene shows another time step than they do. Those that could not be
+// read may be there then.
 void orl_photos_follow_time_step(struct photos *photos);
 // Makes a photograph's colour resident, and its depth if asked for, drawn
 // by the frame's proxy with the frame's parameters. Evicts the least recently used photograph
