@@ -230,6 +230,7 @@ enum orl_result orl_stability_compare(const struct orl_log *log,
             }
         }
     double pixels = (double)sums.all.pixels;
+    step->pixels = sums.all.pixels;
     step->compared = pixels / ((double)after->srgb.width * after->srgb.height);
     step->mean = pixels > 0 ? sums.absolute / pixels : 0;
     step->floor = pixels > 0 ? 0.5 * sums.lost / pixels : 0;
@@ -313,9 +314,10 @@ static void summarise(struct orl_stability *s, const struct orl_stability_counts
     struct orl_stability_step *all = &s->all;
     for (size_t i = 0; i < s->step_count; i++) {
         const struct orl_stability_step *step = &s->steps[i];
+        all->pixels += step->pixels; // frames of a file's views may differ in size
         all->compared += step->compared;
-        all->mean += step->mean * step->compared;
-        all->floor += step->floor * step->compared;
+        all->mean += step->mean * (double)step->pixels;
+        all->floor += step->floor * (double)step->pixels;
         all->blocks += step->blocks;
         all->block_mean += step->block_mean * (double)step->blocks;
         if (step->block_worst > all->block_worst) {
@@ -329,9 +331,9 @@ static void summarise(struct orl_stability *s, const struct orl_stability_counts
             s->worst_jump_step = i;
         }
     }
-    if (all->compared > 0) {
-        all->mean /= all->compared;
-        all->floor /= all->compared;
+    if (all->pixels > 0) {
+        all->mean /= (double)all->pixels;
+        all->floor /= (double)all->pixels;
     }
     if (all->blocks > 0)
         all->block_mean /= (double)all->blocks;

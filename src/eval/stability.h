@@ -15,7 +15,8 @@ enum { ORL_STABILITY_BLOCK = 16 };
 // From one frame to the next. Differences are absolute, in 8-bit sRGB values; a pixel's difference
 // is the mean of its three channels'.
 struct orl_stability_step {
-    double compared; // fraction of pixels where both frames show one surface
+    size_t pixels;   // that are compared, where both frames show one surface
+    double compared; // fraction of all pixels
     double mean;     // of the compared pixels
     double p99;      // 99th percentile over the compared pixels
     // Estimate of what interpolation alone adds to `mean`: half of the second frame's difference

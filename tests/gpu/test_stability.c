@@ -254,6 +254,43 @@ static void steps_without_pixels_do_not_count(void **state)
     teardown(&f);
 }
 
+// The figures of a walk whose last frames are smaller are over its pixels, not over its steps.
+static void frames_count_by_their_pixels(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct orl_renderer *renderer;
+    struct orl_path path;
+    struct orl_stability s;
+    bool skip[PHOTOS] = {false};
+    struct orl_choice choice = {.method = orl_method_find(NULL, "oriel")};
+    const struct orl_stability_params params = {
+        .choice = &choice, .path = &path, .skip = half_way, .skip_priv = skip};
+    double sum = 0, pixels = 0;
+    setup_walk(&f, (uint8_t[]){100, 180, 100});
+    orl_render_params_tuned(NULL, choice.method, &f.scene, &choice.params);
+    assert_int_equal(orl_stability_walk(NULL, &f.scene, NULL, FRAMES, 1, &path), ORL_OK);
+    for (size_t i = 0; i < FRAMES; i++) {
+        path.views[i] = look(0.02);
+        struct orl_camera *c = &path.views[i].camera;
+        if (i >= FRAMES / 2 - 1)
+            *c = orl_camera_resized(c, c->width / 2, c->height / 2);
+    }
+    assert_int_equal(orl_renderer_create(gpu, &f.scene, NULL, &renderer), ORL_OK);
+    assert_int_equal(orl_stability_run(gpu, renderer, &params, &s), ORL_OK);
+    for (size_t i = 0; i < s.step_count; i++) {
+        sum += s.steps[i].mean * (double)s.steps[i].pixels;
+        pixels += (double)s.steps[i].pixels;
+    }
+    assert_true(s.steps[FRAMES / 2 - 1].mean > 30);
+    assert_true(3 * s.steps[FRAMES / 2 - 1].pixels < s.steps[0].pixels);
+    assert_float_equal(s.all.mean, sum / pixels, 1e-6);
+    orl_stability_finish(&s);
+    orl_renderer_destroy(&renderer);
+    orl_path_finish(&path);
+    teardown(&f);
+}
+
 // The walk keeps away from photographs that are held out.
 static void walks_past_training_photographs(void **state)
 {
@@ -290,6 +327,7 @@ int main(void)
         cmocka_unit_test(standing_still_is_steady),
         cmocka_unit_test(a_pop_is_found),
         cmocka_unit_test(steps_without_pixels_do_not_count),
+        cmocka_unit_test(frames_count_by_their_pixels),
         cmocka_unit_test(walks_past_training_photographs),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
