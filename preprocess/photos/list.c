@@ -131,28 +131,27 @@ static int clip_count(const struct orl_job *job)
 }
 
 // The frames 00001.jpg, ... in `dir` of walk.mp4 become walk_00001.jpg, ...
-static enum orl_result add_frames(struct orl_job *job, const char *given, const char *dir,
+static enum orl_result add_frames(struct orl_job *job, const char *name, const char *dir,
                                   const struct orl_names *frames)
 {
     int clip = clip_count(job) + 1;
-    char *name = flat_name(job->log, given);
-    enum orl_result result = name ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = ORL_OK;
     for (size_t i = 0; result == ORL_OK && i < frames->count; i++) {
         char *path = orl_path_join(job->log, dir, frames->items[i]);
         const char *full = ORL_PATH("", "%.*s_%s", (int)(strrchr(name, '.') - name), name, frames->items[i]);
         job->given++;
         result = path ? add_source(job, path, full, full, clip) : ORL_ERR_MEMORY;
     }
-    free(name);
     return result;
 }
 
 // One bad video among others is no reason to stop.
 static enum orl_result add_video(struct orl_job *job, const char *path, const char *given)
 {
-    char *dir = NULL;
+    char *dir = NULL, *name = flat_name(job->log, given); // which its frames' names begin with
     struct orl_names frames = {0};
-    const char *problem = name_problem(orl_path_name(given));
+    ORL_TRY_MEMORY(name);
+    const char *problem = name_problem(name);
     enum orl_result result = problem ? ORL_OK : orl_frames_take(job, path, &dir, &frames);
     if (result == ORL_ERR_DATA || result == ORL_ERR_EXTERNAL)
         problem = "ffmpeg finds no frames in it";
@@ -163,10 +162,11 @@ static enum orl_result add_video(struct orl_job *job, const char *path, const ch
         job->given++;
         result = ORL_OK;
     } else if (result == ORL_OK) {
-        result = add_frames(job, given, dir, &frames);
+        result = add_frames(job, name, dir, &frames);
     }
     orl_names_finish(&frames);
     free(dir);
+    free(name);
     return result;
 }
 

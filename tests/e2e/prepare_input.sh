@@ -73,6 +73,11 @@ if command -v ffmpeg >/dev/null; then
     says "the camera stands still in 3 frames"
     prints "8 given, 7 used, 7 registered"
     [ -f "$work/film-s/images/cam1_walk_00001.jpg" ] || fail "no frame is named after its video"
+    # Frames are named after the folder, too, which COLMAP's lists must be able to hold.
+    mkdir -p "$work/takes/1, hall"
+    cp "$work/films/cam1/walk.mkv" "$work/takes/1, hall"
+    run 2 prepare "$work/takes" --out "$work/s"
+    says "walk.mkv: its name has a comma or a control character: rename it; skipped"
     run 0 prepare "$work/films" --out "$work/film-s" --max-size 96 --resume
     says "calibrate: done already"
     run 0 prepare "$work/films/cam1/walk.mkv" --out "$work/few-s" --frames 5 --max-size 96
