@@ -64,7 +64,7 @@ static enum orl_result measure_blur(struct clip *clip)
     char *filter = orl_format(clip->job->log, "%sfps=%.6f,scale='min(960,iw)':-2,blurdetect,"
                               "metadata=mode=print:key=lavfi.blur:file=-", clip->video.first,
                               clip->rate);
-    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
+    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", ORL_VIDEO_FILE(clip->path),
                                 "-map", "0:V:0", "-vf", filter, "-f", "null", "/dev/null", NULL};
     enum orl_result result = filter ? run_tool(clip, argv, take_blur) : ORL_ERR_MEMORY;
     free(filter);
@@ -93,17 +93,19 @@ static enum orl_result write_frames(const struct clip *clip, const size_t *chose
 {
     char number[24], *filter = orl_array(clip->job->log, 64 + sizeof clip->video + 32 * (to - from), 1);
     ORL_TRY_MEMORY(filter);
+    char *frames = orl_video_numbered(clip->job->log, dir, "%05d.jpg");
     snprintf(number, sizeof number, "%zu", from + 1);
     char *end = filter + sprintf(filter, "%sfps=%.6f,select='", clip->video.first, clip->rate);
     for (size_t i = from; i < to; i++)
         end += sprintf(end, "%seq(n,%zu)", i > from ? "+" : "", chosen[i]);
     sprintf(end, "',%snull", clip->video.colours);
-    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", clip->path,
+    const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-i", ORL_VIDEO_FILE(clip->path),
                                 "-map", "0:V:0", "-vf", filter, "-fps_mode", "passthrough",
                                 "-start_number", number, "-q:v", "1", "-qmin", "1",
-                                ORL_PATH(dir, "%%05d.jpg"), NULL};
-    enum orl_result result = run_tool(clip, argv, NULL);
+                                frames, NULL};
+    enum orl_result result = frames ? run_tool(clip, argv, NULL) : ORL_ERR_MEMORY;
     free(filter);
+    free(frames);
     return result;
 }
 

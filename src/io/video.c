@@ -17,6 +17,19 @@ bool orl_video_is(const char *path)
                                         "webm wmv");
 }
 
+char *orl_video_numbered(const struct orl_log *log, const char *dir, const char *numbers)
+{
+    char *name = orl_array(log, 2 * strlen(dir) + strlen(numbers) + 2, 1), *end = name;
+    for (; name && *dir; dir++) {
+        if (*dir == '%')
+            *end++ = '%';
+        *end++ = *dir;
+    }
+    if (name)
+        sprintf(end, "/%s", numbers);
+    return name;
+}
+
 // --- tags ---
 
 struct tags {
@@ -63,7 +76,7 @@ static enum orl_result read_tags(const struct orl_log *log, const struct orl_pro
         "color_primaries,field_order:stream_side_data=side_data_type,dv_profile:format=duration";
     const char *const argv[] = {"ffprobe", "-v", "error", "-select_streams", "V:0",
                                 "-show_entries", entries, "-of", "default=noprint_wrappers=1",
-                                path, NULL};
+                                ORL_VIDEO_FILE(path), NULL};
     enum orl_result result = orl_process_run(log, &(struct orl_process_params){
         .argv = argv, .progress = progress, .line = take_tag, .line_priv = tags}, NULL);
     if (result == ORL_ERR_NOT_FOUND)
@@ -182,21 +195,22 @@ enum orl_result orl_video_encode(const struct orl_log *log, const struct orl_pro
     struct orl_atomic_file file = {0};
     char rate[32];
     snprintf(rate, sizeof rate, "%g", fps);
-    ORL_TRY(orl_atomic_begin(log, path, &file));
+    char *frames = orl_video_numbered(log, frames_dir, "%05d.png");
+    enum orl_result result = frames ? orl_atomic_begin(log, path, &file) : ORL_ERR_MEMORY;
     // Most players support only even sizes and 4:2:0 chroma subsampling.
     const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y",
-                                "-framerate", rate, "-i", ORL_PATH(frames_dir, "%%05d.png"),
+                                "-framerate", rate, "-i", frames,
                                 "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2,"
                                        "scale=out_color_matrix=bt709:out_range=tv:"
                                        "flags=accurate_rnd",
                                 "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p",
                                 "-colorspace", "bt709", "-color_primaries", "bt709",
                                 "-color_trc", "iec61966-2-1", "-color_range", "tv",
-                                "-movflags", "+faststart", file.temp, NULL};
-    enum orl_result result = orl_process_run(log, &(struct orl_process_params){.argv = argv,
-                                                                               .progress = progress}, NULL);
+                                "-movflags", "+faststart", ORL_VIDEO_FILE(file.temp), NULL};
+    ORL_THEN(result, orl_process_run(log, &(struct orl_process_params){.argv = argv, .progress = progress}, NULL));
     ORL_THEN(result, orl_atomic_commit(log, &file));
     orl_atomic_abort(&file);
+    free(frames);
     return result;
 }
 
@@ -213,14 +227,14 @@ enum orl_result orl_video_decode(const struct orl_log *log, const struct orl_pro
     char *filters = orl_format(log, "%sselect=gte(n\\,%d)*not(mod(n-%d\\,%d)),%snull",
                                video.first, range->first, range->first, range->step,
                                video.colours);
+    char *frames = orl_video_numbered(log, frames_dir, "%05d.ppm");
     const char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-noautorotate",
-                                "-i", path, "-map", "0:V:0", "-vf", filters, "-fps_mode", "passthrough",
-                                "-frames:v", most, "-start_number", "0",
-                                ORL_PATH(frames_dir, "%%05d.ppm"), NULL};
-    enum orl_result result =
-        filters ? orl_process_run(log, &(struct orl_process_params){.argv = argv, .progress = progress}, NULL)
-                : ORL_ERR_MEMORY;
+                                "-i", ORL_VIDEO_FILE(path), "-map", "0:V:0", "-vf", filters,
+                                "-fps_mode", "passthrough", "-frames:v", most, "-start_number", "0", frames, NULL};
+    enum orl_result result = filters && frames ? ORL_OK : ORL_ERR_MEMORY;
+    ORL_THEN(result, orl_process_run(log, &(struct orl_process_params){.argv = argv, .progress = progress}, NULL));
     free(filters);
+    free(frames);
     ORL_THEN(result, orl_dir_list(log, frames_dir, &names));
     if (result == ORL_OK && !names.count)
         result = orl_fail(log, ORL_ERR_DATA, "%s: this clip has no frame %d", path, range->first);

@@ -8,6 +8,12 @@
 // True when the extension is that of a video.
 bool orl_video_is(const char *path);
 
+// A path as ffmpeg takes it, which reads 12:30.mp4 as a protocol and -a.mp4 as an option (ORL_PATH).
+#define ORL_VIDEO_FILE(path) ORL_PATH("", "file:%s", path)
+// The numbered pictures DIR/`numbers` (%05d.png) as ffmpeg takes them, which reads a '%' of DIR as a number, too. The
+// caller frees it. NULL: no memory, logged.
+char *orl_video_numbered(const struct orl_log *log, const char *dir, const char *numbers);
+
 // What is needed to take frames out of a video.
 struct orl_video {
     double seconds; // 0: not known

@@ -78,6 +78,11 @@ if command -v ffmpeg >/dev/null; then
     cp "$work/films/cam1/walk.mkv" "$work/takes/1, hall"
     run 2 prepare "$work/takes" --out "$work/s"
     says "walk.mkv: its name has a comma or a control character: rename it; skipped"
+    # To ffmpeg a name may begin with a protocol, and one of a folder may hold a number's form.
+    cp "$work/films/cam1/walk.mkv" "$work/12:30.mkv"
+    (cd "$work" && "$oriel" prepare 12:30.mkv --out "100% wool" --frames 5 --until collect >out 2>err) ||
+        fail "names with a colon or a per cent sign"
+    [ -e "$work/100% wool/.oriel/photos/12:30_00001.jpg" ] || fail "no frames in a folder with a per cent sign"
     run 0 prepare "$work/films" --out "$work/film-s" --max-size 96 --resume
     says "calibrate: done already"
     run 0 prepare "$work/films/cam1/walk.mkv" --out "$work/few-s" --frames 5 --max-size 96
