@@ -22,9 +22,9 @@ const char *const orl_part_step_names[] = {ORL_PART_STEPS(ORL_ENUM_NAME) NULL};
 
 static json_t *photo_state(const struct orl_source *source, int group)
 {
-    return json_pack("{s:s, s:i, s:f, s:b, s:f, s:f}", "name", source->name, "camera", group,
-                     "taken_s", source->exif.taken_s, "placed", source->exif.placed, "latitude",
-                     source->exif.latitude, "longitude", source->exif.longitude);
+    return json_pack("{s:s, s:i, s:i, s:i, s:f, s:b, s:f, s:f}", "name", source->name, "camera", group,
+                     "width", source->width, "height", source->height, "taken_s", source->exif.taken_s, "placed",
+                     source->exif.placed, "latitude", source->exif.latitude, "longitude", source->exif.longitude);
 }
 
 bool orl_parts_begun(const struct orl_job *job)
@@ -62,8 +62,10 @@ static enum orl_result read_photo(struct orl_job *job, json_t *state,
     int placed = 0;
     struct orl_source *source = &job->sources[i];
     struct orl_exif *exif = &source->exif;
-    if (json_unpack(state, "{s:s, s:I, s:F, s:b, s:F, s:F}", "name", &name, "camera", &camera, "taken_s", &exif->taken_s,
-                    "placed", &placed, "latitude", &exif->latitude, "longitude", &exif->longitude) != 0 ||
+    // Calibrations that earlier programs began have no sizes.
+    if (json_unpack(state, "{s:s, s:I, s?i, s?i, s:F, s:b, s:F, s:F}", "name", &name, "camera", &camera, "width",
+                    &source->width, "height", &source->height, "taken_s", &exif->taken_s, "placed", &placed,
+                    "latitude", &exif->latitude, "longitude", &exif->longitude) != 0 ||
         camera < 0 || (size_t)camera > i)
         return orl_fail(job->log, ORL_ERR_FORMAT, "%s/" STATE ": damaged", job->dir);
     source->name = orl_strdup(job->log, name);

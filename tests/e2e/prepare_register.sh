@@ -94,6 +94,12 @@ extracted "" 2
 : >"$work/options"
 run 0 prepare "$work/p" --out "$work/small" --until undistort
 extracted "" 1
+# Jobs do the same.
+: >"$work/options"
+run 0 prepare "$work/large" --out "$work/coarse-jobs" --until collect
+run 0 job calibrate "$work/coarse-jobs" --step features --part 1/1
+extracted "first_octave 0" 1
+extracted "" 2
 unset DOUBLE_NO_CUDA DOUBLE_OPTIONS
 
 # A distortion that turns back on itself: the mapper runs again without any.
