@@ -57,12 +57,12 @@ run 0 job calibrate "$work/a" --step pairs
 says "nothing left to do"
 [ -e "$work/a/scene.json" ] && fail "a scene that is not whole has a manifest"
 run 2 info "$work/a"
-cp -r "$work/a" "$work/b"
+cp -r "$work/a" "$work/b c"
 
 # The graph: three passes of three parts, two clusters and the rest; a pass needs the one before.
-run 0 plan "$work/b" --photographs 2
+run 0 plan "$work/b c" --photographs 2
 prints "of CPU  up to"
-run 0 plan "$work/b" --photographs 2 --json
+run 0 plan "$work/b c" --photographs 2 --json
 cp "$work/out" "$work/plan.json"
 grep -q '"densify-0-0001"' "$work/plan.json" || fail "a geometric pass needs nothing"
 [ "$(grep -c '"kind": "densify"' "$work/plan.json")" -ge 6 ] || fail "too few jobs"
@@ -72,13 +72,13 @@ grep -q '"--radius-overlap"' "$work/plan.json" || fail "the last job has other r
 grep -qF "\"$photos\"" "$work/plan.json" || fail "the last job does not name the photographs"
 
 # A part that is not begun with these settings, and one that does not exist, change nothing.
-run 2 densify "$work/b" --part 1/3 --photos "$work/b/stereo/fusion.cfg" --sources 7
+run 2 densify "$work/b c" --part 1/3 --photos "$work/b c/stereo/fusion.cfg" --sources 7
 says "not begun with these settings"
-run 2 densify "$work/b" --part 4/3
+run 2 densify "$work/b c" --part 4/3
 says "must be K/N"
-run 2 job fuse "$work/b" --part 1/3 --photographs 3
+run 2 job fuse "$work/b c" --part 1/3 --photographs 3
 says "6 photographs are fused in 2 clusters, not in 3"
-[ -z "$(ls "$work/b/stereo/depth_maps")" ] || fail "a part that was refused has made maps"
+[ -z "$(ls "$work/b c/stereo/depth_maps")" ] || fail "a part that was refused has made maps"
 
 prepare 0 a --resume
 grep -q '"clusters": 2' "$work/a/scene.json" || fail "prepare fuses no clusters"
@@ -94,24 +94,24 @@ exec "$oriel" "\$@"
 END
     chmod +x "$work/oriel"
     jobs plan.json && fail "a job that was killed is no failure"
-    [ -e "$work/b/scene.json" ] && fail "a scene that is not whole has a manifest"
+    [ -e "$work/b c/scene.json" ] && fail "a scene that is not whole has a manifest"
     jobs plan.json --rerun-incomplete || fail "the jobs do not go on: $(tail -n 5 "$work/err")"
 else
     jobs_in_order "$work/plan.json"
 fi
 for file in points.ply sparse/points3D.bin images/0003.jpg; do
-    cmp "$work/a/$file" "$work/b/$file" || fail "the jobs make another $file"
+    cmp "$work/a/$file" "$work/b c/$file" || fail "the jobs make another $file"
 done
-for scene in a b; do
+for scene in a "b c"; do
     grep -v '_s"\|_mib"' "$work/$scene/scene.json" >"$work/$scene.json"
 done
-diff "$work/a.json" "$work/b.json" >"$work/diff" || fail "another manifest: $(head -n 5 "$work/diff")"
+diff "$work/a.json" "$work/b c.json" >"$work/diff" || fail "another manifest: $(head -n 5 "$work/diff")"
 
 # Everything again changes nothing, and there is nothing left to plan.
-run 0 densify "$work/b" --part 1/3 --pass 0
+run 0 densify "$work/b c" --part 1/3 --pass 0
 says "nothing left to do"
-run 0 job fuse "$work/b" --part 1/2 --photographs 3
+run 0 job fuse "$work/b c" --part 1/2 --photographs 3
 says "nothing left to do"
-run 0 plan "$work/b"
+run 0 plan "$work/b c"
 prints "is whole"
 finish
