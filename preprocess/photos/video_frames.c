@@ -191,6 +191,9 @@ enum orl_result orl_frames_take(struct orl_job *job, const char *path, char **di
         result = orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/frames"));
         ORL_THEN(result, orl_job_fresh_dir(job, temp));
         ORL_THEN(result, make_frames(&clip, made));
+        // A full disk is no fault of the video's.
+        if (result == ORL_ERR_EXTERNAL && orl_job_need_disk(job, "frames", 64 << 20) != ORL_OK)
+            result = ORL_ERR_IO;
         ORL_THEN(result, orl_flush(job->log, made)); // ffmpeg does not
         if (result == ORL_OK && rename(made, *dir) != 0)
             result = orl_fail(job->log, ORL_ERR_IO, "%s: cannot be renamed to %s", made, *dir);
