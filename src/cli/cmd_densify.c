@@ -56,6 +56,8 @@ static enum orl_result run_densify(struct call *call)
     struct orl_densify_params params = {ORL_DENSIFY_OPTIONS(ORL_OPTION_COPY)};
     if (o->photos && o->exclude.count)
         return orl_fail(call->log, ORL_ERR_ARGUMENT, "--photos and --exclude exclude each other");
+    if (o->pass && !o->part.count)
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "--pass %d: is of --part", o->pass);
     params.part = o->part.count ? &part : NULL;
     return params.part && command_is_whole(call) ? ORL_OK : densify(call, &params);
 }

@@ -207,6 +207,8 @@ static enum orl_result check_together(const struct orl_log *log, const struct ev
     if ((o->walk || o->path) && (o->merge >= 0 || o->truth))
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk compares frames with each other: "
                         "without --merge and --truth");
+    if ((o->walk && o->path) || ((o->walk || o->path) && o->views))
+        return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --walk, --path and --views exclude each other");
     if ((o->walk || o->path) && o->vary)
         return orl_fail(log, ORL_ERR_ARGUMENT, "eval: --vary is of held-out photographs: without "
                         "--walk");

@@ -115,6 +115,8 @@ static enum orl_result check(const struct orl_log *log, const char *dir)
 static enum orl_result run_info(struct call *call)
 {
     const struct info_options *o = call->options;
+    if (o->check && o->json)
+        return orl_fail(call->log, ORL_ERR_ARGUMENT, "info: --json and --check exclude each other");
     if (o->check)
         return check(call->log, call->inputs[0]);
     ORL_TRY(command_scene(call, NULL));

@@ -14,7 +14,7 @@
 #define SYNTH_OPTIONS(ROW) \
     ROW(out, "out", NEEDED("DIR"), "photographs go here: a new or empty folder") \
     ROW(truth, "truth", TEXT("DIR"), \
-        "cameras, depth, normals, radiance; default: DIR-truth") \
+        "cameras, depth, normals, radiance; default: DIR-truth", "monument") \
     ROW(size, "size", SIZE, "size of a photograph; default: 768x512, figures 640x480") \
     ORL_SYNTH_OPTIONS(ROW) \
     ROW(exposures, "exposures", LIST("EV,.."), \

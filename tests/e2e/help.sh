@@ -30,6 +30,14 @@ runs 2 "$oriel" job
 grep -q '^  fuse ' stderr.txt || fail "job alone does not list its commands"
 runs 2 "$oriel" job render
 
+# What another option leaves no meaning is refused, before anything is read.
+for words in "info x --json --check" "densify x --pass 1" "eval x --walk 3 --path y" "eval x --walk 3 --views 2" \
+    "synth figures --out x --truth y"; do
+    # shellcheck disable=SC2086
+    runs 2 "$oriel" $words
+    grep -q "exclude each other\|is of --part\|is an option of monument" stderr.txt || fail "ignores an option: $words"
+done
+
 # Every option is in every form.
 options=$("$oriel" render --help | grep -oE '^  --[a-z-]+')
 for form in man markdown; do
