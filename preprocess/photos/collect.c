@@ -103,6 +103,10 @@ static enum orl_result drop_duplicates(struct orl_job *job)
             last = source;
             continue;
         }
+        if (strcmp(last->path, source->path) != 0 && last->clip && source->clip)
+            return orl_fail(job->log, ORL_ERR_ARGUMENT, "two videos have frames of the same name, %s: rename one of "
+                            "them, or where they are in different folders give the one that holds both",
+                            source->name);
         if (strcmp(last->path, source->path) != 0)
             return orl_fail(job->log, ORL_ERR_ARGUMENT, "%s and %s have the same name, %s: rename one, or %s",
                             last->path, source->path, source->name,

@@ -78,6 +78,11 @@ if command -v ffmpeg >/dev/null; then
     cp "$work/films/cam1/walk.mkv" "$work/takes/1, hall"
     run 2 prepare "$work/takes" --out "$work/s"
     says "walk.mkv: its name has a comma or a control character: rename it; skipped"
+    mkdir "$work/converted"
+    cp "$work/films/cam1/walk.mkv" "$work/converted"
+    ffmpeg -loglevel error -i "$work/films/cam1/walk.mkv" -c:v ffv1 -vf hflip "$work/converted/walk.avi"
+    run 2 prepare "$work/converted" --out "$work/s"
+    says "two videos have frames of the same name, walk_00001.jpg: rename one of them"
     # To ffmpeg a name may begin with a protocol, and one of a folder may hold a number's form.
     cp "$work/films/cam1/walk.mkv" "$work/12:30.mkv"
     (cd "$work" && "$oriel" prepare 12:30.mkv --out "100% wool" --frames 5 --until collect >out 2>err) ||
