@@ -551,7 +551,7 @@ static json_t *recorded_arguments(const struct orl_prepare_params *params)
     json_t *arguments = json_array();
     for (size_t i = 0; i < params->input_count; i++) {
         char *real = realpath(params->inputs[i], NULL);
-        json_array_append_new(arguments, json_string(real ? real : params->inputs[i]));
+        json_array_append_new(arguments, orl_json_string(real ? real : params->inputs[i]));
         free(real);
     }
     orl_arguments_record(arguments, orl_prepare_options(), params);

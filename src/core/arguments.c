@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/json.h"
+
 static void *field_of(const struct orl_option *row, void *values)
 {
     return (char *)values + row->offset;
@@ -259,10 +261,11 @@ void orl_arguments_finish(const struct orl_option *rows, void *values)
 
 // --- records ---
 
+// Also of a path that is not UTF-8: it names no file then, but the option is not forgotten.
 static json_t *path_text(const char *path)
 {
     char *real = path ? realpath(path, NULL) : NULL;
-    json_t *text = path ? json_string(real ? real : path) : NULL;
+    json_t *text = path ? orl_json_string(real ? real : path) : NULL;
     free(real);
     return text;
 }

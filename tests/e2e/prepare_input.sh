@@ -48,6 +48,13 @@ says "1 usable photograph of 3"
 run 0 prepare "$work/same" --out "$work/same-s"
 says "c.png: shows the same as a.png (see --leave-out)"
 
+# A plan's last job names its folder, even where that is not UTF-8 and it cannot: else it would go on without.
+latin=$work/caf$(printf '\351')
+photos "$latin" a.png b.png c.png
+run 0 prepare "$latin" --out "$work/latin-s" --until collect
+run 0 plan "$work/latin-s" --json
+prints '/caf\\xe9"'
+
 # HEIC, as phones write it: COLMAP gets JPEG files.
 if command -v heif-enc >/dev/null; then
     photos "$work/phone" a.png
