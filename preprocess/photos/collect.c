@@ -55,8 +55,12 @@ static void drop_unreadable(struct orl_job *job)
         struct reason reason = {"cannot be read"};
         struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
         struct orl_picture_info info;
-        if (orl_develop_wanted(source->given) && orl_picture_inspect(&log, source->path, &info) != ORL_OK)
+        if (!orl_develop_wanted(source->given))
+            continue;
+        if (orl_picture_inspect(&log, source->path, &info) != ORL_OK)
             skip_for(job, source, &reason);
+        source->width = info.width; // for orl_develop_at_once; 0 of those that are dropped
+        source->height = info.height;
     }
     orl_photos_close_up(job);
 }
@@ -185,8 +189,8 @@ static enum orl_result inspect_all(struct orl_job *job)
     struct inspection all = {job, orl_array(job->log, job->source_count, sizeof *all.reasons)};
     ORL_TRY_MEMORY(all.reasons);
     enum orl_result result = orl_threads_each(&(struct orl_each){
-        .work = inspect_one, .priv = &all, .count = job->source_count, .progress = job->progress,
-        .step = "collect", .share = 1, .total = 1});
+        .work = inspect_one, .priv = &all, .count = job->source_count, .threads = orl_develop_at_once(job),
+        .progress = job->progress, .step = "collect", .share = 1, .total = 1});
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++) {
         if (all.reasons[i].text[0])
             skip_for(job, &job->sources[i], &all.reasons[i]);

@@ -147,6 +147,20 @@ static enum orl_result develop(void *priv, size_t item)
     return ORL_OK;
 }
 
+size_t orl_develop_at_once(const struct orl_job *job)
+{
+    // Bytes of a pixel while it is decoded and becomes one of 8 bits. RAW takes most (io/raw.c).
+    enum { DEEP = 31, EIGHT = 8 };
+    double most = 1;
+    for (size_t i = 0; i < job->source_count; i++) {
+        const struct orl_source *source = &job->sources[i];
+        int bytes = orl_develop_wanted(source->given) || source->deep ? DEEP : EIGHT;
+        most = fmax(most, (double)bytes * source->width * source->height);
+    }
+    double count = 0.5 * (double)orl_memory_available() / most;
+    return count < 1 ? 1 : count < (double)job->source_count ? (size_t)count : job->source_count;
+}
+
 enum orl_result orl_develop(struct orl_job *job)
 {
     size_t count = 0;
@@ -157,7 +171,8 @@ enum orl_result orl_develop(struct orl_job *job)
     ORL_TRY(orl_dir_make(job->log, ORL_PATH(job->dir, ".oriel/developed")));
     ORL_TRY(choose_scale(job));
     ORL_TRY(orl_threads_each(&(struct orl_each){.work = develop, .priv = job, .count = job->source_count,
-                                                .progress = job->progress, .step = "develop", .share = 1, .total = 1}));
+                                                .threads = orl_develop_at_once(job), .progress = job->progress,
+                                                .step = "develop", .share = 1, .total = 1}));
     orl_progress_report(job->progress, "develop", 1, 1, NULL);
     return ORL_OK;
 }

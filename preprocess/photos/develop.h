@@ -7,6 +7,9 @@
 
 // True when COLMAP needs an 8-bit copy of the file, by its extension.
 bool orl_develop_wanted(const char *name);
+// Photographs that may be decoded at once, of which half of the memory that is left has room. Those without a size yet
+// do not count.
+size_t orl_develop_at_once(const struct orl_job *job);
 // Makes missing copies and sets source->path to the copy's. Sets job->linear_scale.
 enum orl_result orl_develop(struct orl_job *job) ORL_CHECK_RESULT;
 // Reads the photograph as given, in linear light, F32 x3. 1 is its copy's white.
