@@ -17,7 +17,7 @@ static const float light_max = 65504; // greatest half float; infinities would s
 
 bool orl_develop_wanted(const char *name)
 {
-    return orl_path_has_extension(name, "tif tiff exr heic heif avif ppm") || orl_picture_is_raw(name);
+    return orl_path_has_extension(name, "tif tiff exr heic heif hif avif ppm") || orl_picture_is_raw(name);
 }
 
 // --- floating point photographs: choice of white ---

@@ -63,6 +63,7 @@ if command -v heif-enc >/dev/null; then
     done
     rm "$work/phone/a.png"
     ln "$work/phone/70.HEIC" "$work/phone/80.heif" # the same file
+    mv "$work/phone/90.HEIC" "$work/phone/90.HIF" # as cameras name it
     run 0 prepare "$work/phone" --out "$work/phone-s" --max-size 96
     prints "4 given, 3 used, 3 registered"
     [ -f "$work/phone-s/images/70.jpg" ] || fail "no JPEG is made of a HEIC file"
