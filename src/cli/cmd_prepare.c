@@ -34,5 +34,5 @@ const struct command command_prepare = {
     .summary = "Makes a scene from photographs and videos (files and folders of them). Needs COLMAP;\n"
                "ORIEL_COLMAP names its program when it is not on PATH.",
     .rows = orl_prepare_options, .presets = &presets, .size = sizeof presets, .inputs_min = 1,
-    .inputs_max = 4096, .run = run_prepare,
+    .inputs_max = 1 << 20, .run = run_prepare,
 };

@@ -7,6 +7,10 @@ run 2 prepare "$work/nowhere" --out "$work/s"
 says "$work/nowhere: no such folder or file"
 [ -e "$work/s" ] && fail "a scene folder was left behind"
 
+# As many as a shell's pattern may give.
+run 2 prepare "$work/nowhere" $(seq 5000) --out "$work/s"
+says "$work/nowhere: no such folder or file"
+
 mkdir "$work/empty"
 run 2 prepare "$work/empty" --out "$work/s"
 says "$work/empty: no photograph here"
