@@ -72,8 +72,9 @@ static const char *raw_of(const struct orl_job *job, const char *given)
     bool may_have = orl_path_has_extension(given, "jpg jpeg");
     for (size_t k = 0; may_have && k < job->source_count; k++) {
         const char *other = job->sources[k].given;
-        if (other && orl_develop_wanted(other) && orl_path_stem(other) == stem &&
-            strncasecmp(other, given, stem) == 0)
+        // Most names differ, which is seen soonest.
+        if (other && strncasecmp(other, given, stem) == 0 && orl_path_stem(other) == stem &&
+            orl_develop_wanted(other))
             return other;
     }
     return NULL;
