@@ -120,7 +120,9 @@ static enum orl_result consider_all(struct calibration *c, const char *out)
             result = ORL_OK;
         }
     }
-    if (result == ORL_OK && *odd && !c->best.path) {
+    // Another mapper may find an ordinary one yet, and beside a straight one there is the bent one.
+    bool last = c->mapper == ORL_MAPPER_INCREMENTAL && !c->straight;
+    if (result == ORL_OK && *odd && !c->best.path && last) {
         result = orl_colmap_read(log, odd, &model); // for its word on what is wrong
         if (result == ORL_ERR_FORMAT)
             result = orl_fail(log, ORL_ERR_DATA, "%s: " LENS_ADVICE, odd);

@@ -27,6 +27,10 @@ grep -q '"mapper": "hierarchical"' "$work/parts/scene.json" || fail "the scene d
 grep -q '"bundle_adjuster_s"' "$work/parts/scene.json" || fail "no time of COLMAP's programs"
 DOUBLE_NEW=1 run 0 prepare "$work/p" --out "$work/global" --mapper global
 mapped_by "global_mapper"
+# A camera that no lens makes is not the last word: another mapper may find an ordinary one.
+DOUBLE_NEW=1 DOUBLE_GLOBAL_FOCAL=0 run 0 prepare "$work/p" --out "$work/global-odd" --mapper global
+prints "5 used, 5 registered"
+mapped_by "global_mapper mapper"
 run 1 prepare "$work/p" --out "$work/old" --mapper global
 says "COLMAP 9.9 has no global_mapper"
 # A mapper that finds no model has the incremental one for a substitute.
@@ -107,6 +111,9 @@ DOUBLE_BENT=1 run 0 prepare "$work/p" --out "$work/bent" --verbose
 says "a distortion that no lens has"
 prints "5 used, 5 registered"
 grep -q " 0$" "$work/bent/.oriel/calibrate/model/cameras.txt" || fail "the bent camera was kept"
+# Where none makes the camera one of no lens, the bent one stays.
+DOUBLE_BENT=1 DOUBLE_STRAIGHT_FOCAL=0 "$oriel" prepare "$work/p" --out "$work/bent-still" >"$work/out" 2>"$work/err"
+[ -d "$work/bent-still/.oriel/calibrate/model" ] || fail "no camera is left"
 
 # Without distortion COLMAP would make photographs smaller, but not their cameras.
 run 0 prepare "$work/p" --out "$work/shrunk" --max-size 64
