@@ -208,7 +208,7 @@ static enum orl_result begin_again(struct calibration *c, enum orl_matching way,
     ORL_TRY(orl_job_remove(c->job, WORK "/database.db-wal"));
     ORL_TRY(orl_job_remove(c->job, WORK "/database.db-shm"));
     ORL_TRY(extract_all(c, costly));
-    ORL_TRY(orl_match(c->job, way, costly, NULL, NULL));
+    ORL_TRY(orl_match(c->job, way, costly, NULL, &c->pairs));
     return map(c, false, NULL);
 }
 

@@ -164,6 +164,10 @@ prints "5 used, 5 registered"
 DOUBLE_ALONE="3.png 4.png" run 0 prepare "$work/p" --out "$work/whole-too" --masks "$work/m" --until undistort
 says "taking features of whole photographs"
 [ "$(grep -c mask_path "$work/whole-too/logs/colmap.log")" = 1 ] || fail "masks were passed over at first"
+# So do those whose pairs are chosen by look, as of more than 25 photographs.
+DOUBLE_MASKED_ALONE="3.png 4.png" run 0 prepare "$work/p" --out "$work/whole-looks" --masks "$work/m" \
+    --matching retrieval --until undistort
+says "taking features of whole photographs"
 
 # A scene whose mask is missing does not open; without masks the folder goes.
 cp -r "$work/masked" "$work/lacking"
