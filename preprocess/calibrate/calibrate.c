@@ -337,13 +337,23 @@ static enum orl_result normalise(const struct calibration *c)
     return result;
 }
 
+// A run that was ended while COLMAP verified further matches has left names without their spaces (match.c).
+static enum orl_result show_spaces(const struct calibration *c)
+{
+    struct orl_database *db;
+    ORL_TRY(orl_database_open(c->job->log, ORL_PATH(c->job->dir, WORK "/database.db"), &db));
+    enum orl_result result = orl_database_hide_spaces(db, false);
+    orl_database_close(&db);
+    return result;
+}
+
 // Features and matches survive an interruption of the mapper. Those that jobs have made are used.
 static enum orl_result begin_database(struct calibration *c)
 {
     bool joined = false;
     if (orl_job_has_key(c->job, ORL_STAGE_CALIBRATE, WORK "/matched")) {
         orl_logf(c->job->log, ORL_LOG_INFO, "calibrate: features and matches are there already");
-        return ORL_OK;
+        return show_spaces(c);
     }
     if (orl_parts_begun(c->job))
         ORL_TRY(orl_parts_join(c->job, &c->pairs, &joined));

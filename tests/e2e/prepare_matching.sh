@@ -62,6 +62,14 @@ run 0 prepare "$work/p" --out "$work/killed" --matching retrieval \
 [ "$(grep -c feature_extractor "$work/trace")" = 2 ] || fail "half a database was used"
 run 0 info "$work/killed"
 
+# Ended while names had no spaces, at matches that came after the mapper: they have them again.
+DOUBLE_FAIL=mapper run 1 prepare "$work/p" --out "$work/spaces"
+sqlite3 "$work/spaces/.oriel/calibrate.tmp/database.db" "UPDATE images SET name = replace(name, ' ', char(31))"
+run 0 prepare "$work/p" --out "$work/spaces" --resume
+says "features and matches are there already"
+[ "$(sqlite3 "$work/spaces/.oriel/calibrate/database.db" \
+    "SELECT COUNT(*) FROM images WHERE name = 'one day.png'")" = 1 ] || fail "a photograph has another name"
+
 # Of 26, sequential matches those up to 20 apart, and auto retrieves.
 photos "$work/many" $(seq -f %02.0f.png 26)
 : >"$work/pairs"
