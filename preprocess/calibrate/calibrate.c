@@ -204,9 +204,7 @@ static enum orl_result begin_again(struct calibration *c, enum orl_matching way,
 {
     c->features++;
     ORL_TRY(set_mark(c, false));
-    ORL_TRY(orl_job_remove(c->job, WORK "/database.db"));
-    ORL_TRY(orl_job_remove(c->job, WORK "/database.db-wal"));
-    ORL_TRY(orl_job_remove(c->job, WORK "/database.db-shm"));
+    ORL_TRY(orl_match_remove_database(c->job, ORL_CALIBRATE_DATABASE));
     ORL_TRY(extract_all(c, costly));
     ORL_TRY(orl_match(c->job, way, costly, NULL, &c->pairs));
     return map(c, false, NULL);

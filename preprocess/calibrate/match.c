@@ -30,6 +30,13 @@ enum orl_result orl_match_open_database(const struct orl_job *job, const char *n
     return orl_database_open(job->log, ORL_PATH(job->dir, "%s", name), db);
 }
 
+enum orl_result orl_match_remove_database(const struct orl_job *job, const char *name)
+{
+    ORL_TRY(orl_job_remove(job, name));
+    ORL_TRY(orl_job_remove(job, ORL_PATH("", "%s-wal", name)));
+    return orl_job_remove(job, ORL_PATH("", "%s-shm", name));
+}
+
 // --- Oriel's own matching, on the CPU ---
 
 struct found {

@@ -16,6 +16,9 @@ enum orl_result orl_match_open_database(const struct orl_job *job, const char *n
                                         struct orl_database **db) ORL_CHECK_RESULT;
 // The way that this choice and this many photographs ask for; never auto.
 enum orl_matching orl_match_way(enum orl_matching asked, size_t photographs);
+// Removes a database with what SQLite keeps beside it: a program that was killed leaves a log there, which SQLite would
+// replay into another database of this name.
+enum orl_result orl_match_remove_database(const struct orl_job *job, const char *name) ORL_CHECK_RESULT;
 // What retrieval did.
 struct orl_match_summary {
     size_t tried, chosen; // pairs

@@ -157,6 +157,7 @@ static enum orl_result join_features(const struct part *part)
     enum orl_result result = find_parts(job, ORL_PART_FEATURES, &parts);
     if (result == ORL_OK && !parts)
         return orl_fail(job->log, ORL_ERR_DATA, "%s: features of some part are missing", job->dir);
+    ORL_THEN(result, orl_match_remove_database(job, part->temp_db));
     for (int k = 0; result == ORL_OK && k < parts; k++) {
         const char *from = ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_FEATURES, k, parts, ".db"));
         if (k == 0)
@@ -239,7 +240,7 @@ static enum orl_result run_matches(const struct part *part)
     struct orl_pair_list own = {.items = list.items + begin, .count = end - begin};
     for (size_t i = begin; result == ORL_OK && i < end; i++)
         used[list.items[i].a] = used[list.items[i].b] = true;
-    ORL_THEN(result, orl_job_remove(job, part->temp_db));
+    ORL_THEN(result, orl_match_remove_database(job, part->temp_db));
     ORL_THEN(result, orl_database_create_like(job->log, ORL_PATH(job->dir, "%s", part->temp_db), from, &db));
     for (size_t i = 0; result == ORL_OK && i < job->source_count; i++)
         if (used[i])
@@ -313,8 +314,9 @@ enum orl_result orl_parts_join(struct orl_job *job, struct orl_match_summary *su
     *joined = false;
     if (result != ORL_OK || !parts)
         return result;
-    result = orl_file_copy(job->log, ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_PAIRS, 0, 1, ".db")),
-                           ORL_PATH(job->dir, ORL_CALIBRATE_DATABASE));
+    result = orl_match_remove_database(job, ORL_CALIBRATE_DATABASE);
+    ORL_THEN(result, orl_file_copy(job->log, ORL_PATH(job->dir, "%s", PART_NAME(ORL_PART_PAIRS, 0, 1, ".db")),
+                                   ORL_PATH(job->dir, ORL_CALIBRATE_DATABASE)));
     ORL_THEN(result, read_pairs(job, &list, summary));
     ORL_THEN(result, orl_match_open_database(job, ORL_CALIBRATE_DATABASE, &db));
     for (int k = 0; result == ORL_OK && k < parts; k++)
