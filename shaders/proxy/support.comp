@@ -22,13 +22,13 @@ void main()
     ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
     if (corner.x >= level_size.x || corner.y >= level_size.y)
         return;
-    support found[4];
-    support_of(corner, found);
+    float depth[4];
+    int kept = support_of(corner, depth);
     for (int i = 0; i < 4; i++) { // stores come last: see gather/tiled.comp; those outside do nothing
         ivec2 at = corner + ivec2(i & 1, i >> 1);
-        imageStore(depth_out, at, vec4(found[i].depth));
+        imageStore(depth_out, at, vec4(depth[i]));
 #ifdef NORMALS
-        if (!found[i].keeps)
+        if ((kept >> i & 1) == 0)
             imageStore(normal, at, vec4(0.0));
 #endif
     }

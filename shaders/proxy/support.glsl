@@ -7,21 +7,16 @@ const float SUPPORT_AGREES = 0.03;   // of the depth: as far apart two pixels of
 const int SUPPORT_LEAST = 8;         // pixels, itself one of them: a thinner or smaller surface is an outlier
 const int SUPPORT_CLOSES = 13;       // pixels: most of 5x5
 
-struct support {
-    bool keeps;  // the pixel is no outlier
-    float depth; // of the pixel, or the mean around it if it is a hole that closes; 0: none
-};
-
-// Of 2x2 pixels, of which `corner` is the upper left. They share what is around: the four apart would cost twice as much.
-void support_of(ivec2 corner, out support found[4])
+// Of 2x2 pixels, of which `corner` is the upper left: a bit for each that is no outlier. depth: of the pixel, or the mean
+// around it if it is a hole that closes; 0: none. The four share what is around: apart they would cost twice as much.
+int support_of(ivec2 corner, out float depth[4])
 {
     vec2 range[4];
     int agree[4];
     for (int i = 0; i < 4; i++) {
-        float z = pushed(corner + ivec2(i & 1, i >> 1));
-        found[i].depth = z;
+        depth[i] = pushed(corner + ivec2(i & 1, i >> 1));
         // Every depth agrees with a hole's.
-        range[i] = z > 0.0 ? vec2(1.0 - SUPPORT_AGREES, 1.0 + SUPPORT_AGREES) * z : vec2(1e-30, 1e30);
+        range[i] = depth[i] > 0.0 ? vec2(1.0 - SUPPORT_AGREES, 1.0 + SUPPORT_AGREES) * depth[i] : vec2(1e-30, 1e30);
         agree[i] = 0;
     }
     float known = 0.0, sum = 0.0, nearest = 1e30, farthest = 0.0;
@@ -38,9 +33,12 @@ void support_of(ivec2 corner, out support found[4])
             }
         }
     bool one_surface = farthest < (1.0 + 2.0 * SUPPORT_AGREES) * nearest;
+    int kept = 0;
     for (int i = 0; i < 4; i++) {
-        bool hole = !(found[i].depth > 0.0), closes = hole && one_surface && agree[i] >= SUPPORT_CLOSES;
-        found[i].keeps = !hole && agree[i] >= SUPPORT_LEAST;
-        found[i].depth = found[i].keeps ? found[i].depth : closes ? sum / known : 0.0;
+        bool hole = !(depth[i] > 0.0), closes = hole && one_surface && agree[i] >= SUPPORT_CLOSES;
+        bool keeps = !hole && agree[i] >= SUPPORT_LEAST;
+        kept |= keeps ? 1 << i : 0;
+        depth[i] = keeps ? depth[i] : closes ? sum / known : 0.0;
     }
+    return kept;
 }

@@ -13,9 +13,8 @@ float pushed(ivec2 at)
 void main()
 {
     ivec2 at = ivec2(gl_FragCoord.xy), side = at & 1;
-    support found[4];
-    support_of(at - side, found);
-    support own = found[side.x + 2 * side.y];
-    depth_out = own.depth;
-    normal_out = own.keeps ? texelFetch(pushed_normal, at, 0) : vec4(0.0);
+    float depth[4];
+    int own = side.x + 2 * side.y, kept = support_of(at - side, depth);
+    depth_out = depth[own];
+    normal_out = (kept >> own & 1) == 1 ? texelFetch(pushed_normal, at, 0) : vec4(0.0);
 }
