@@ -81,6 +81,17 @@ static enum orl_result check_photo_files(const struct orl_log *log, struct orl_s
     return check_if_there(log, scene, orl_scene_mesh_path(scene), &mesh);
 }
 
+// What all time steps have in common.
+static enum orl_result check_resting_files(const struct orl_log *log, const struct orl_scene *scene)
+{
+    for (size_t i = 0; i < scene->photo_count; i++) {
+        bool occluders, background;
+        ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_OCCLUDERS), &occluders));
+        ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_BACKGROUND), &background));
+    }
+    return ORL_OK;
+}
+
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene, int frame)
 {
     int before = scene->frame;
@@ -117,7 +128,8 @@ static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *s
         scene->photo_count = i + 1; // counted first, so that a half-made one is released
         ORL_TRY(set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]));
     }
-    return check_photo_files(log, scene);
+    ORL_TRY(check_photo_files(log, scene));
+    return check_resting_files(log, scene);
 }
 
 // Sorts the values. share: of them that are smaller, [0, 1); 0 without any.

@@ -407,13 +407,15 @@ static void links_out_of_the_scene_are_refused(void **state)
     (void)state;
     static const char *const names[] = {"images/b.jpg", "images", "sparse", "sparse/images.txt",
                                         "points.ply", "scene.json", "images_linear/b.jpg.exr",
-                                        "masks/b.jpg.png"};
+                                        "masks/b.jpg.png", "background/b.jpg.png", "occluders/b.jpg.png"};
     char *elsewhere = test_dir_make(), from[4096], to[4096];
     struct orl_scene *scene;
     for (size_t i = 0; i < ORL_COUNT(names); i++) {
         char *dir = whole();
         save(dir, "images_linear/b.jpg.exr", "not looked at here");
         save(dir, "masks/b.jpg.png", "nor this");
+        save(dir, "background/b.jpg.png", "nor this");
+        save(dir, "occluders/b.jpg.png", "nor this");
         snprintf(from, sizeof from, "%s/%s", dir, names[i]);
         snprintf(to, sizeof to, "%s/moved", elsewhere);
         assert_int_equal(rename(from, to), 0);
