@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/memory.h"
 #include "core/vec3.h"
 #include "io/picture.h"
@@ -166,6 +167,17 @@ static enum orl_result find_room(struct site *site, const struct orl_points *hul
     return ORL_OK;
 }
 
+// Reads a picture of the empty place, which may be of any size, as large as its photograph.
+static enum orl_result read_background(const struct orl_log *log, const char *path, const struct orl_camera *camera,
+                                       struct orl_image *image)
+{
+    struct orl_image whole = {0};
+    enum orl_result result = orl_picture_read(log, path, 3, &whole);
+    ORL_THEN(result, orl_bridge_resize(log, &whole, camera->width, camera->height, image));
+    orl_image_finish(&whole);
+    return result;
+}
+
 // Points where a photograph shows the room: its picture of the empty place, else what is beside the
 // silhouette.
 static enum orl_result wall_of(const struct site *site, size_t photo, size_t most, struct orl_points *walls)
@@ -176,7 +188,7 @@ static enum orl_result wall_of(const struct site *site, size_t photo, size_t mos
     struct orl_image picture = {0}, mask = {0};
     const struct orl_file_path path = orl_scene_file(site->scene, photo, ORL_FILE_BACKGROUND);
     bool empty = orl_path_is_file(path.text);
-    enum orl_result result = empty ? orl_picture_read(log, path.text, 3, &picture)
+    enum orl_result result = empty ? read_background(log, path.text, c, &picture)
                                    : orl_photo_read(log, site->scene, photo, false, &picture);
     if (result == ORL_OK && !empty && site->scene->photos[photo].masked)
         result = orl_photo_mask_read(log, site->scene, photo, &mask);

@@ -13,6 +13,15 @@ for file in steps/00000/points/coarse.bin steps/00002/points/coarse.bin steps/00
     [ -s "site/$file" ] || fail "the site lacks $file"
 done
 cmp -s site/steps/00000/points/coarse.bin site/steps/00002/points/coarse.bin && fail "the hull stands still"
+# Pictures of the empty place may be larger than photographs.
+runs 0 "$oriel" synth figures --out large --cameras 5 --frames 3 --size 640x480
+cp -r moving emptied
+for file in emptied/background/*.jpg.png; do
+    cp "large/background/$(basename "$file" .jpg.png).png" "$file" || fail "no larger background"
+done
+runs 0 "$oriel" publish emptied --out emptied_site
+[ "$(stat -c %s emptied_site/points/coarse.bin)" = "$(stat -c %s site/points/coarse.bin)" ] ||
+    fail "larger pictures of the empty place make more points"
 [ $failed -eq 0 ] || exit 1
 needs_browser
 timeout 400 /usr/bin/python3 -B "$source/tests/web/test_time_steps.py" "$oriel" "$work/moving" "$work/site"
