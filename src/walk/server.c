@@ -532,6 +532,16 @@ static enum orl_result serve_once(struct server *server, bool waits)
     return result;
 }
 
+// Serves clients while something else is under way. Of a sequence they may ask for other time steps, after which that
+// goes on with its own; what cameras show now has the newest alone.
+static enum orl_result serve_meanwhile(struct server *server)
+{
+    struct orl_scene *scene = server->walk.scene;
+    int frame = scene->frame;
+    ORL_TRY(serve_once(server, false));
+    return server->live || scene->frame == frame ? ORL_OK : orl_scene_set_frame(server->log, scene, frame);
+}
+
 // Between two frames of a rendering, clients are served.
 static void report_rendering(void *priv, size_t done, size_t total, const char *file)
 {
@@ -540,7 +550,7 @@ static void report_rendering(void *priv, size_t done, size_t total, const char *
         server->result = reply(server->renders_for,
                                json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
                                          "total", (json_int_t)total, "file", file));
-    ORL_THEN(server->result, serve_once(server, false));
+    ORL_THEN(server->result, serve_meanwhile(server));
 }
 
 // What a client asks for may fail without ending the server.
@@ -566,7 +576,7 @@ static void report_site(void *priv, const char *step, double done, double total,
     (void)step;
     (void)detail;
     ORL_THEN(server->result, tell_site(server, json_pack("{s:f, s:f}", "done", done, "total", total), false));
-    ORL_THEN(server->result, serve_once(server, false));
+    ORL_THEN(server->result, serve_meanwhile(server));
 }
 
 static bool site_cancelled(void *priv)
@@ -579,8 +589,17 @@ static bool site_cancelled(void *priv)
 static void make_site(struct server *server)
 {
     const struct orl_progress progress = {report_site, site_cancelled, server};
-    enum orl_result result = orl_content_publish(&server->content, server->walk.gpu, server->walk.scene,
-                                                 server->params->radiance, &progress);
+    struct orl_scene *scene = server->walk.scene;
+    int frame = scene->frame;
+    enum orl_result result = ORL_OK;
+    if (server->live)
+        result = orl_fail(server->log, ORL_ERR_UNSUPPORTED, "what cameras show now is not published");
+    else if (scene->frame_count) // a site begins with what the scene itself shows, as that of oriel publish
+        result = orl_scene_set_frame(server->log, scene, -1);
+    ORL_THEN(result, orl_content_publish(&server->content, server->walk.gpu, scene, server->params->radiance,
+                                         &progress));
+    if (scene->frame != frame && !server->live)
+        ORL_THEN(server->result, orl_scene_set_frame(server->log, scene, frame));
     if (result == ORL_OK)
         ORL_THEN(server->result, tell_site_ready(server));
     else

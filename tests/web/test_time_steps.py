@@ -51,6 +51,21 @@ class TimeSteps(unittest.TestCase):
         self.assertEqual(self.picture(client, [99, 99]), pictures[2])
         client.close()
 
+    def test_data_of_the_site_do_not_depend_on_what_clients_look_at(self):
+        client, said = Client(self.walk), {}
+        looks = {"number": 2, "layer": "color", "quality": 90, "time_steps": [1, 1], **self.camera}
+        self.picture(client, [2, 2])
+        client.send({"site": True})
+        while "ready" not in said:
+            client.send(looks)
+            opcode, data = client.receive()
+            said = json.loads(data).get("site", {}) if opcode == 1 else said
+            self.assertNotIn("problem", said)
+        for file in ("photos/00000.jpg", "photos/00003.jpg", "steps/00001/photos/00003.jpg", "steps/00002/photos/00003.jpg"):
+            with open(f"{SITE}/{file}", "rb") as published:
+                self.assertEqual(self.walk.get(f"/site/{file}")[1], published.read(), file)
+        client.close()
+
     def test_no_time_step_before_the_first(self):
         for bad in ([-1, 0], [0], "now", [0, 1e300]):
             client = Client(self.walk)

@@ -208,7 +208,7 @@ class Walk {
                                 onLayer: layer => this.setLayer(layer),
                                 onExposure: ev => this.change(() => this.setExposure(ev)),
                                 onTone: name => this.change(() => this.picture.setTone(name)),
-                                onDrawer: this.server ? id => this.drawBy(id) : null,
+                                onDrawer: this.server && !this.manifest.follows ? id => this.drawBy(id) : null,
                                 onBenchmark: () => this.measure()});
         if (this.manifest.methods)
             this.makeMethods();
