@@ -13,6 +13,7 @@
 
 #include <libwebsockets.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "walk/choices.h"
 #include "walk/content_internal.h"
@@ -231,8 +232,8 @@ static bool take_rendering(struct server *server, struct session *session, json_
 // "": it is.
 static enum orl_result tell_choice(struct session *session, const char *problem)
 {
-    return reply(session, json_pack("{s:o, s:s}", "choice", orl_walk_choice_json(&session->choice),
-                                    "problem", problem));
+    return reply(session, json_pack("{s:o, s:o}", "choice", orl_walk_choice_json(&session->choice),
+                                    "problem", orl_json_string(problem)));
 }
 
 static bool take_choice(const struct server *server, struct session *session, const json_t *message)
@@ -548,8 +549,8 @@ static void report_rendering(void *priv, size_t done, size_t total, const char *
     struct server *server = priv;
     if (server->result == ORL_OK && server->renders_for)
         server->result = reply(server->renders_for,
-                               json_pack("{s:{s:I, s:I, s:s}}", "rendering", "done", (json_int_t)done,
-                                         "total", (json_int_t)total, "file", file));
+                               json_pack("{s:{s:I, s:I, s:o}}", "rendering", "done", (json_int_t)done,
+                                         "total", (json_int_t)total, "file", orl_json_string(file)));
     ORL_THEN(server->result, serve_meanwhile(server));
 }
 

@@ -83,7 +83,7 @@ static json_t *pose_json(const struct orl_pose *pose)
 
 json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c)
 {
-    return json_pack("{s:s, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:i}", "name", photo->name, "width",
+    return json_pack("{s:o, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:i}", "name", orl_json_string(photo->name), "width",
                      c->width, "height", c->height, "fx", c->fx, "fy", c->fy, "cx", c->cx, "cy",
                      c->cy, "cam_from_world", pose_json(&photo->view.cam_from_world),
                      "orientation", photo->orientation);
@@ -92,8 +92,8 @@ json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *c
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,
                           size_t start)
 {
-    return json_pack("{s:s, s:i, s:s, s:s, s:o, s:f, s:f, s:o, s:o, s:I, s:O, s:I}", "format", "oriel site",
-                     "version", 1, "made_by", "oriel " ORL_VERSION, "title", title, "up",
+    return json_pack("{s:s, s:i, s:s, s:o, s:o, s:f, s:f, s:o, s:o, s:I, s:O, s:I}", "format", "oriel site",
+                     "version", 1, "made_by", "oriel " ORL_VERSION, "title", orl_json_string(title), "up",
                      up_json(scene), "distance",
                      scene->photo_distance > 0 ? scene->photo_distance : 1.0, "near",
                      scene->near_distance, "ground", orl_manifest_ground(&scene->ground), "backdrop",

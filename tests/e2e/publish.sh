@@ -18,6 +18,10 @@ done
 grep -q '<title>A &quot;test&quot; &amp; &lt;more></title>' "$site/index.html" ||
     fail "the title is not in the page as text"
 grep -q '{{' "$site/index.html" && fail "the page has unfilled places"
+# A folder's name need not be UTF-8.
+cp -r made $'caf\xe9'
+runs 0 "$oriel" publish $'caf\xe9' --out latin
+grep -qF '"title": "caf\\xe9"' latin/manifest.json || fail "a name that is not UTF-8 is not the title"
 # What must be there before the page shows anything.
 first=$(find "$site" \( -path '*/js/*' -o -path '*/points/coarse.bin' -o \
     -path "$site/*" ! -path "$site/*/*" \) -type f -exec cat {} + | wc -c)
