@@ -191,7 +191,6 @@ static enum orl_result make_picture(const struct content *content, size_t number
     ORL_THEN(result, orl_jpeg_encode(log, shrinks ? &small : &image, quality, &file->owned, &file->size));
     file->type = "image/jpeg";
     file->data = file->owned;
-    file->is_private = true;
     orl_image_finish(&image);
     orl_image_finish(&small);
     return result;
@@ -213,8 +212,7 @@ static enum orl_result make_map(const struct content *content, struct content_fi
         memcpy(map[i].color, points->color[i * step], sizeof points->color[0]);
     }
     *file = (struct content_file){.type = "application/octet-stream", .data = (const uint8_t *)map,
-                                  .size = count * sizeof *map, .owned = (uint8_t *)map,
-                                  .is_private = true};
+                                  .size = count * sizeof *map, .owned = (uint8_t *)map};
     return map ? ORL_OK : ORL_ERR_MEMORY;
 }
 
@@ -242,10 +240,29 @@ static enum orl_result find_in_site(const struct content *content, const char *p
     for (size_t i = 0; i < content->site_paths.count; i++)
         if (strcmp(content->site_paths.items[i], path) == 0) {
             *file = (struct content_file){.type = type_of(path), .data = content->site[i].data,
-                                          .size = content->site[i].size, .is_private = true};
+                                          .size = content->site[i].size};
             return ORL_OK;
         }
     return ORL_ERR_NOT_FOUND;
+}
+
+static bool is_index(const char *path)
+{
+    return strcmp(path, "/") == 0 || strcmp(path, "/index.html") == 0;
+}
+
+// The text of one of the page's other files; NULL: it has no such file.
+static const char *page_text(const char *path)
+{
+    const struct orl_web_file *f = orl_web_table;
+    while (f->name && strcmp(f->name, path + 1) != 0)
+        f++;
+    return f->name ? f->text : NULL;
+}
+
+bool orl_content_is_page(const char *path)
+{
+    return is_index(path) || page_text(path);
 }
 
 enum orl_result orl_content_find(const struct content *content, const char *path,
@@ -253,13 +270,10 @@ enum orl_result orl_content_find(const struct content *content, const char *path
 {
     size_t number;
     *file = (struct content_file){0};
-    if (strcmp(path, "/") == 0 || strcmp(path, "/index.html") == 0)
+    if (is_index(path))
         return copy_text(content, "text/html", content->index, file);
-    if (strcmp(path, "/manifest.json") == 0) {
-        enum orl_result result = copy_text(content, "application/json", content->manifest, file);
-        file->is_private = true;
-        return result;
-    }
+    if (strcmp(path, "/manifest.json") == 0)
+        return copy_text(content, "application/json", content->manifest, file);
     if (strncmp(path, site_folder, strlen(site_folder)) == 0)
         return find_in_site(content, path + strlen(site_folder), file);
     if (strcmp(path, "/map.bin") == 0)
@@ -268,10 +282,9 @@ enum orl_result orl_content_find(const struct content *content, const char *path
         return make_picture(content, number, THUMB_SIDE, THUMB_QUALITY, file);
     if (photo_number(content, path, "/photos/", &number))
         return make_picture(content, number, PICTURE_SIDE, PICTURE_QUALITY, file);
-    for (const struct orl_web_file *f = orl_web_table; f->name; f++)
-        if (strcmp(f->name, path + 1) == 0) {
-            *file = text_file(type_of(path), f->text);
-            return ORL_OK;
-        }
-    return ORL_ERR_NOT_FOUND;
+    const char *text = page_text(path);
+    if (!text)
+        return ORL_ERR_NOT_FOUND;
+    *file = text_file(type_of(path), text);
+    return ORL_OK;
 }

@@ -35,7 +35,6 @@ struct content_file {
     const uint8_t *data;
     size_t size;
     uint8_t *owned;        // memory that the caller releases with free(); may be NULL
-    bool is_private;       // belongs to the scene, not to the page alone
 };
 
 // title: NULL to take that of the settings. edits: clients may change the settings and choose
@@ -51,6 +50,8 @@ enum orl_result orl_content_change(struct content *content, json_t *settings) OR
 enum orl_result orl_content_publish(struct content *content, struct orl_gpu *gpu, struct orl_scene *scene, bool radiance,
                                     const struct orl_progress *progress) ORL_CHECK_RESULT;
 void orl_content_finish(struct content *content);
+// Is this the path of a file of the page, which tells nothing of the scene but its title?
+bool orl_content_is_page(const char *path);
 // `path` as in a request, starting with its slash. ORL_ERR_NOT_FOUND, not logged: no such file.
 enum orl_result orl_content_find(const struct content *content, const char *path,
                              struct content_file *file) ORL_CHECK_RESULT;

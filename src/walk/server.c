@@ -140,15 +140,14 @@ static int start_file(struct server *server, struct lws *wsi, struct session *se
         (void)!lws_return_http_status(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, NULL);
         return -1; // a body that came with the request is not read: the connection ends
     }
+    // Before anything is made: without the token, nobody learns what there is, nor keeps the server busy.
+    if (!orl_content_is_page(path) && !has_token(server, wsi))
+        return refuse(wsi, HTTP_STATUS_FORBIDDEN);
     forget_file(session);
     enum orl_result result = orl_content_find(&server->content, path, &session->file);
     if (result != ORL_OK)
         return refuse(wsi, result == ORL_ERR_NOT_FOUND ? HTTP_STATUS_NOT_FOUND
                                                        : HTTP_STATUS_INTERNAL_SERVER_ERROR);
-    if (session->file.is_private && !has_token(server, wsi)) {
-        forget_file(session); // or it would be sent after the refusal
-        return refuse(wsi, HTTP_STATUS_FORBIDDEN);
-    }
     session->written = 0;
     if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, session->file.type, session->file.size,
                                     &at, end) ||

@@ -319,6 +319,9 @@ class Token(unittest.TestCase):
             self.assertEqual(len(token), 32)
             self.assertEqual(walk.get("/manifest.json")[0], 403)
             self.assertEqual(walk.get("/photos/00000.jpg?token=" + "0" * 32)[0], 403)
+            self.assertEqual(walk.get("/photos/99999.jpg")[0], 403) # what there is not, either
+            self.assertEqual(walk.get(f"/photos/99999.jpg?token={token}")[0], 404)
+            self.assertEqual(walk.get("/js/main.js")[0], 200)
             self.assertEqual(walk.get(f"/manifest.json?token={token}", Host="any.example")[0], 200)
             client = Client(walk, f"/live?token={token}") # may not change anything
             client.send({"save": {"title": "x"}})
