@@ -90,6 +90,12 @@ class TimeSteps(unittest.TestCase):
         browser.settle()
         self.assertEqual(browser.js("return document.querySelector('#time-steps output').textContent"), "3 / 3")
         self.assertFalse(browser.js("return oriel.timeSteps.playing"))
+        # What no longer repeats goes on from where it is, however many rounds have passed.
+        self.assertEqual(browser.js(
+            "const {timeSteps} = oriel, loop = document.querySelector('#time-steps input[type=checkbox]'); "
+            "timeSteps.show(0); timeSteps.toggle(); timeSteps.since -= 10000; loop.click(); timeSteps.advance(); "
+            "const {timeStep} = timeSteps; timeSteps.show(2); loop.click(); return timeStep"), 0)
+        browser.settle()
         self.assertEqual(browser.errors(), [])
         if len(sys.argv) > 4:
             browser.screenshot(sys.argv[4])

@@ -19,7 +19,10 @@ export class TimeSteps {
             this.speed = Number(speed.value);
             this.restart();
         }}, ...SPEEDS.map(value => make("option", {value, textContent: `${value}\u00d7`, selected: value === 1})));
-        const loop = make("input", {type: "checkbox", checked: true, onchange: () => this.loops = loop.checked});
+        const loop = make("input", {type: "checkbox", checked: true, onchange: () => {
+            this.loops = loop.checked;
+            this.restart(); // or the rounds that have passed would count, and end it at once
+        }});
         bar.append(this.button, button("\u2039", () => this.show(this.timeStep - 1), {title: t.back}),
                    button("\u203a", () => this.show(this.timeStep + 1), {title: t.forth}), this.slider,
                    this.place, speed, make("label", {}, loop, t.loop));
