@@ -276,11 +276,12 @@ enum orl_result orl_walk_warm_up(struct walk_renderer *walk,
     struct orl_camera *c = &request.view.camera;
     *c = orl_camera_resized(c, WIDTH, WIDTH * c->height / c->width + 1);
     // The first frame compiles the programs, which is no measure of those that follow.
-    struct outcome outcome = {.missing = 1};
+    struct outcome outcome = {0};
     double start = 0;
     enum orl_result result = ORL_OK;
-    for (int i = 0; result == ORL_OK && outcome.missing > 0; i++) {
+    for (int i = 0; result == ORL_OK && (i < 2 || outcome.missing > 0); i++) {
         struct orl_image picture = {0};
+        outcome.missing = 0; // of a time step, which is drawn whole
         request.at_rest = i % 2 == 0; // both kinds of frames compile their programs
         result = draw(walk, &request, params, &picture, &outcome);
         orl_image_finish(&picture);
