@@ -43,6 +43,7 @@ static enum orl_result name_files(struct run *run, const char *format)
 {
     const struct orl_log *log = run->rendering->log;
     const char *folder = ORL_PATH(run->rendering->scene->dir, "renders");
+    ORL_TRY(orl_walk_check_inside(log, run->rendering->scene, folder));
     ORL_TRY(orl_dir_make(log, folder));
     for (int number = 1; number <= NUMBER_MAX; number++) {
         orl_path_print(run->keys, folder, "%03d.path.json", number);

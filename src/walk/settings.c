@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "core/file.h"
 #include "core/json.h"
@@ -153,10 +154,20 @@ enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *w
 
 // --- the file ---
 
+enum orl_result orl_walk_check_inside(const struct orl_log *log, const struct orl_scene *scene, const char *path)
+{
+    struct stat there;
+    return lstat(path, &there) != 0 || !S_ISLNK(there.st_mode) || orl_path_is_inside(scene->dir, path)
+               ? ORL_OK
+               : orl_fail(log, ORL_ERR_DATA, "%s: leads out of the scene through a symbolic link, and is not used",
+                          path);
+}
+
 enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct orl_scene *scene,
                                        json_t **settings)
 {
     const char *path = ORL_PATH(scene->dir, "%s", file_name);
+    ORL_TRY(orl_walk_check_inside(log, scene, path));
     if (!orl_path_is_file(path)) {
         *settings = json_object();
         return *settings ? ORL_OK : ORL_ERR_MEMORY;
@@ -168,7 +179,9 @@ enum orl_result orl_walk_settings_read(const struct orl_log *log, const struct o
 enum orl_result orl_walk_settings_write(const struct orl_log *log, const struct orl_scene *scene,
                                         const json_t *settings)
 {
-    return orl_json_write(log, ORL_PATH(scene->dir, "%s", file_name), settings);
+    const char *path = ORL_PATH(scene->dir, "%s", file_name);
+    ORL_TRY(orl_walk_check_inside(log, scene, path));
+    return orl_json_write(log, path, settings);
 }
 
 bool orl_walk_settings_start(const json_t *settings, const struct orl_camera *camera,

@@ -18,6 +18,10 @@ enum {
                         WALK_TOUR_VIEWS_MAX * WALK_VIEW_BYTES,
 };
 
+// Something in the scene that a walk reads or writes by its name. ORL_ERR_DATA: it is a symbolic link out of the scene,
+// which its maker may have put there.
+enum orl_result orl_walk_check_inside(const struct orl_log *log, const struct orl_scene *scene,
+                                      const char *path) ORL_CHECK_RESULT;
 // Checks settings that came from `where`, a file or a client. ORL_ERR_FORMAT, logged: what is wrong.
 enum orl_result orl_walk_settings_check(const struct orl_log *log, const char *where,
                                         const json_t *settings) ORL_CHECK_RESULT;

@@ -3,7 +3,9 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
+#include "core/file.h"
 #include "walk/settings.h"
 
 static enum orl_result check(const char *text)
@@ -94,6 +96,29 @@ static void test_frame_of_a_view(void **state)
     json_decref(settings);
 }
 
+// A stranger's scene has no file of the user's read or written.
+static void test_links_out_of_the_scene(void **state)
+{
+    (void)state;
+    char *dir = test_dir_make(), *elsewhere = test_dir_make();
+    struct orl_scene scene = {.dir = dir};
+    json_t *settings = json_loads("{\"title\": \"T\"}", 0, NULL), *read = NULL;
+    const char *out = ORL_PATH(elsewhere, "theirs.json"), *link = ORL_PATH(dir, "walk.json");
+    assert_int_equal(symlink(out, link), 0);
+    assert_int_equal(orl_walk_settings_write(NULL, &scene, settings), ORL_ERR_DATA); // it leads nowhere yet
+    assert_false(orl_path_is_file(out));
+    assert_int_equal(orl_file_write(NULL, out, "{}", 2), ORL_OK);
+    assert_int_equal(orl_walk_settings_read(NULL, &scene, &read), ORL_ERR_DATA);
+    assert_int_equal(unlink(link), 0);
+    assert_int_equal(orl_file_write(NULL, ORL_PATH(dir, "own.json"), "{}", 2), ORL_OK);
+    assert_int_equal(symlink("own.json", link), 0);
+    assert_int_equal(orl_walk_settings_read(NULL, &scene, &read), ORL_OK);
+    json_decref(read);
+    json_decref(settings);
+    test_dir_remove(elsewhere);
+    test_dir_remove(dir);
+}
+
 // Limits of each number alone still allow views that no camera has.
 static void test_frames_of_no_camera(void **state)
 {
@@ -118,6 +143,7 @@ int main(void)
         cmocka_unit_test(test_what_is_allowed),
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_links_out_of_the_scene),
         cmocka_unit_test(test_frame_of_a_view),
         cmocka_unit_test(test_frames_of_no_camera),
     };
