@@ -432,6 +432,14 @@ class Page(unittest.TestCase):
             for key, value in home["frame"].items():
                 self.assertAlmostEqual(begins["frame"][key], value, places=5)
             os.remove(f"{SCENE}/walk.json")
+            # Windows that are longer, or lower, than what the server draws: it would close the connection.
+            sizes = browser.js("""
+                return [[9000, 180], [20, 10], [0, 0]].map(([width, height]) => {
+                    Object.assign(window, {innerWidth: width, innerHeight: height});
+                    const camera = oriel.windowCamera(0.5);
+                    return [camera.width, camera.height];
+                });""")
+            self.assertEqual(sizes, [[2048, 41], [16, 16], [16, 16]])
             self.assertEqual(browser.errors(), [])
         finally:
             browser.close()

@@ -7,6 +7,7 @@ const HEADER_WORDS = 6;
 const LAYERS = ["color", "depth", "normal", "coverage", "points"];
 const QUALITY_MOVING = 75, QUALITY_STILL = 90;
 const PIXELS_MAX = 2.0e6; // the server refuses more than 4 million
+const SIDES = [16, 4096];  // the least and the longest, as the server takes them
 const RETRY_MS = 1500;
 const SILENT_MS = 8000; // a server that has not answered for so long is said to hang
 const TOO_LARGE = 1009; // why a server closes: a message is longer than it takes
@@ -27,7 +28,7 @@ export class LivePicture {
         Object.assign(this, {canvas, onChange, all: photos, layers: LAYERS});
         this.context = canvas.getContext("2d", {alpha: false});
         this.remote = true;    // frames come later than they are asked for
-        this.pixelsMost = PIXELS_MAX;
+        Object.assign(this, {pixelsMost: PIXELS_MAX, sides: SIDES});
         this.number = 0;       // of the last request
         this.asked = null;     // {at, marks} of the one that is under way
         this.next = null;      // to ask for once it has come

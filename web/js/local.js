@@ -53,6 +53,7 @@ export class LocalPicture {
         this.remote = false;   // a frame is there once draw() returns
         // Of a picture, whatever the screen: each takes some 120 bytes on the graphics chip.
         this.pixelsMost = handheld ? 1.0e6 : 2.6e6;
+        this.sides = [2, Infinity];
         this.cloud = new Cloud(device, coarse);
         this.renderer = new Renderer(device, sources, manifest, photos, this.cloud, photoBudget());
         this.moving = manifest.steps ? new Moving(device, files, manifest, photos, onChange) : null;

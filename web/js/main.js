@@ -466,9 +466,10 @@ class Walk {
     {
         const ratio = window.devicePixelRatio || 1;
         let width = window.innerWidth * ratio, height = window.innerHeight * ratio;
-        const fit = Math.min(1, Math.sqrt(this.picture.pixelsMost / (width * height))) * share;
-        width = Math.max(Math.round(width * fit), 2);
-        height = Math.max(Math.round(height * fit), 2);
+        const {pixelsMost, sides: [least, most]} = this.picture;
+        const fit = Math.min(1, Math.sqrt(pixelsMost / (width * height)), most / Math.max(width, height)) * share;
+        width = Math.max(Math.round(width * fit), least);
+        height = Math.max(Math.round(height * fit), least);
         return cameraOf(this.navigator.view, width, height);
     }
 
