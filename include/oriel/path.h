@@ -12,9 +12,10 @@ struct orl_path {
 // Reads a path. The format is recognised by content:
 // - Oriel keyframes: {"keyframes": [KEY, ...], "frames": N}. KEY is one of
 //   {"photo": NAME}, {"position": [x,y,z], "target": [x,y,z], "up": [x,y,z]} and
-//   {"cam_from_world": 3 rows of 4}, each with optional "fov_y_deg". The N frames are spread
-//   evenly: centres follow a Catmull-Rom spline, rotations are interpolated by slerp. Without
-//   "frames" the path consists of the keyframes themselves.
+//   {"cam_from_world": 3 rows of 4}, each with optional "fov_y_deg" and "seconds" to the next KEY (1).
+//   The N frames are spread evenly in time: centres follow a cubic spline, Catmull-Rom's where all
+//   seconds are equal, rotations are interpolated by slerp. Without "frames" the path consists of the
+//   keyframes themselves.
 // - nerfstudio camera_path.json, Inria cameras.json, COLMAP images.txt (cameras come from
 //   cameras.txt beside it, or else from the scene's first photograph). They are in the coordinates of
 //   the file of cameras that was imported, from which scene->origin is taken off.

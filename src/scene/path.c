@@ -98,28 +98,29 @@ static void spline_centre(const struct keys *keys, size_t segment, double t, dou
     }
 }
 
-// The segment that a share of the whole time lies in; *t: the place in it, from 0 to 1.
-static size_t segment_at(const struct keys *keys, double share, double *t)
+// Goes on from a segment, which begins at *begin, to the one that a time lies in. Returns the place in it, from 0 to 1.
+static double advance(const struct keys *keys, double time, size_t *segment, double *begin)
 {
-    size_t segment = 0, last = keys->path->count - 2;
-    double all = 0;
-    for (size_t i = 0; i <= last; i++)
-        all += seconds_from(keys, i);
-    double left = share * all;
-    while (segment < last && left >= seconds_from(keys, segment))
-        left -= seconds_from(keys, segment++);
-    *t = fmin(left / seconds_from(keys, segment), 1);
-    return segment;
+    size_t last = keys->path->count - 2;
+    while (*segment < last && time - *begin >= seconds_from(keys, *segment)) {
+        *begin += seconds_from(keys, *segment);
+        ++*segment;
+    }
+    return fmin(fmax((time - *begin) / seconds_from(keys, *segment), 0), 1);
 }
 
 static enum orl_result spread_frames(const struct orl_log *log, const struct keys *keys,
                                      size_t frames, struct orl_path *path)
 {
     const struct orl_view *first = keys->path->views;
+    size_t segment = 0;
+    double all = 0, begin = 0;
     ORL_TRY(allocate(log, frames, path));
+    for (size_t i = 0; i + 1 < keys->path->count; i++)
+        all += seconds_from(keys, i);
     for (size_t i = 0; i < frames; i++) {
-        double centre[3], t;
-        size_t segment = segment_at(keys, frames > 1 ? (double)i / (double)(frames - 1) : 0, &t);
+        double centre[3], share = frames > 1 ? (double)i / (double)(frames - 1) : 0;
+        double t = advance(keys, share * all, &segment, &begin);
         struct orl_view *view = &path->views[i];
         *view = orl_view_interpolate(&first[segment], &first[segment + 1], t);
         view->camera = orl_camera_reframed(&view->camera, first->camera.width,

@@ -367,6 +367,34 @@ static void many_poses_take_little_time(void **state)
     test_grows_in_proportion(seconds_to_read);
 }
 
+// Processor seconds of spreading frames over as many keyframes.
+static double seconds_to_spread(int count)
+{
+    FILE *keys = test_create(dir, "many.json");
+    fprintf(keys, "{\"frames\": %d, \"keyframes\": [", count);
+    for (int i = 0; i < count; i++)
+        fprintf(keys, "%s{\"photo\": \"%s\"}", i ? ",\n" : "", i % 2 ? "b" : "a");
+    fprintf(keys, "]}");
+    assert_int_equal(fclose(keys), 0);
+    char *file = orl_path_join(NULL, dir, "many.json");
+    struct orl_path path;
+    clock_t start = clock();
+    assert_int_equal(orl_path_read(NULL, &scene, file, &path), ORL_OK);
+    clock_t end = clock();
+    assert_int_equal(path.count, count);
+    assert_centre(&path.views[count - 1], count % 2 ? -1 : 3, 0, 0);
+    orl_path_finish(&path);
+    free(file);
+    return (double)(end - start) / CLOCKS_PER_SEC;
+}
+
+// A frame goes on from the keyframes of the one before it.
+static void many_keyframes_take_little_time(void **state)
+{
+    (void)state;
+    test_grows_in_proportion(seconds_to_spread);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -384,6 +412,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(damaged_paths_are_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(refusals_say_why, set_up, tear_down),
         cmocka_unit_test_setup_teardown(many_poses_take_little_time, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(many_keyframes_take_little_time, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("path", tests, NULL, NULL);
 }
