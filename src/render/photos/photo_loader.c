@@ -45,7 +45,7 @@ enum state { UNREAD, BEING_READ, READ, FAILED, TAKEN };
 // All but the first five members are guarded by `lock`.
 struct photo_loader {
     const struct orl_log *log;
-    const struct orl_scene *scene;
+    struct orl_scene scene; // as it was at the start, while its owner may go on to another time step; photos: owned
     bool linear;
     bool has_thread; // the thread itself does not look
     pthread_t thread;
@@ -83,7 +83,7 @@ static void *read_photos(void *priv)
         struct orl_image image = {0};
         l->states[photo] = BEING_READ;
         pthread_mutex_unlock(&l->lock);
-        enum orl_result result = orl_photo_read(l->log, l->scene, photo, l->linear, &image);
+        enum orl_result result = orl_photo_read(l->log, &l->scene, photo, l->linear, &image);
         pthread_mutex_lock(&l->lock);
         l->states[photo] = result == ORL_OK ? READ : FAILED;
         l->read[photo] = image;
@@ -101,14 +101,17 @@ enum orl_result orl_photo_loader_create(const struct orl_log *log, const struct 
     *out = NULL;
     ORL_TRY_MEMORY(l);
     l->log = log;
-    l->scene = scene;
+    l->scene = *scene;
+    l->scene.photos = orl_array(log, scene->photo_count, sizeof *l->scene.photos);
+    if (l->scene.photos)
+        memcpy(l->scene.photos, scene->photos, scene->photo_count * sizeof *scene->photos);
     l->linear = linear;
     l->wanted = orl_array(log, scene->photo_count, sizeof *l->wanted);
     l->read = orl_array(log, scene->photo_count, sizeof *l->read);
     l->states = orl_array(log, scene->photo_count, sizeof *l->states);
     pthread_mutex_init(&l->lock, NULL);
     pthread_cond_init(&l->changed, NULL);
-    enum orl_result result = l->wanted && l->read && l->states ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = l->scene.photos && l->wanted && l->read && l->states ? ORL_OK : ORL_ERR_MEMORY;
     l->has_thread = result == ORL_OK && pthread_create(&l->thread, NULL, read_photos, l) == 0;
     if (result == ORL_OK && !l->has_thread)
         result = orl_fail(log, ORL_ERR_MEMORY, "no thread to read photographs");
@@ -132,7 +135,7 @@ static struct orl_image give(struct photo_loader *l, size_t photo, enum state ne
 // Forgets photographs that were read and are no longer wanted.
 static void drop_unwanted(struct photo_loader *l)
 {
-    for (size_t i = 0; i < l->scene->photo_count && l->bytes > 0; i++) {
+    for (size_t i = 0; i < l->scene.photo_count && l->bytes > 0; i++) {
         bool is_wanted = false;
         for (size_t k = 0; k < l->wanted_count; k++)
             is_wanted = is_wanted || l->wanted[k] == i;
@@ -159,6 +162,7 @@ void orl_photo_loader_destroy(struct photo_loader **loader)
     }
     pthread_mutex_destroy(&l->lock);
     pthread_cond_destroy(&l->changed);
+    free(l->scene.photos);
     free(l->wanted);
     free(l->read);
     free(l->states);
