@@ -11,8 +11,8 @@ struct series {
     int number;              // series number, as in struct orl_photo
     size_t count;            // number of photographs in use
     float ev;                // their exposure, in stops above the scene's middle
+    int response;            // of all of them, as in struct orl_photo
     bool *skip;              // per photograph: not of this series, or skipped for a view
-    const float (*response)[256]; // of the scene: linear exposure of 8-bit values; NULL: sRGB
 };
 
 struct series_set {

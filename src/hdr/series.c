@@ -24,10 +24,16 @@ static bool in_use(const struct orl_hdr_params *params, const struct orl_scene *
     return params->use ? params->use[i] : !scene->photos[i].test;
 }
 
-static struct series *find_series(struct series_set *set, int number)
+// Photographs of two response curves are two series: a picture is linearised by the curve of all that it shows.
+static bool belongs(const struct series *s, const struct orl_photo *photo)
+{
+    return photo->series == s->number && photo->response == s->response;
+}
+
+static struct series *find_series(struct series_set *set, const struct orl_photo *photo)
 {
     for (size_t k = 0; k < set->count; k++)
-        if (set->items[k].number == number)
+        if (belongs(&set->items[k], photo))
             return &set->items[k];
     return NULL;
 }
@@ -35,14 +41,13 @@ static struct series *find_series(struct series_set *set, int number)
 static enum orl_result add_photo(const struct orl_log *log, struct series_set *set, size_t index)
 {
     const struct orl_photo *photo = &set->scene.photos[index];
-    struct series *s = find_series(set, photo->series);
+    struct series *s = find_series(set, photo);
     if (!s) {
         s = &set->items[set->count++];
         s->number = photo->series;
+        s->response = photo->response;
         s->skip = orl_array(log, set->scene.photo_count, sizeof *s->skip);
         ORL_TRY_MEMORY(s->skip);
-        if (photo->response >= 0)
-            s->response = (const float (*)[256])set->scene.responses[photo->response].linear;
     }
     s->ev += (float)photo_ev(photo);
     s->count++;
@@ -70,7 +75,7 @@ enum orl_result orl_series_init(struct orl_gpu *gpu, const struct orl_scene *sce
     }
     // Pictures keep the exposure of their series, so that they clip where its photographs clip.
     for (size_t i = 0; i < scene->photo_count; i++) {
-        const struct series *s = find_series(set, scene->photos[i].series);
+        const struct series *s = find_series(set, &scene->photos[i]);
         for (int c = 0; s && c < 3; c++)
             set->scene.photos[i].gain[c] *= exp2f(s->ev);
     }
@@ -91,11 +96,12 @@ void orl_series_finish(struct series_set *set)
 
 // --- merging ---
 
-static float linearise(const struct series *s, int channel, float color)
+// response: of the photographs that a colour was painted from; NULL: sRGB
+static float linearise(const struct orl_response *response, int channel, float color)
 {
-    if (!s->response)
+    if (!response)
         return color;
-    const float *curve = s->response[channel];
+    const float *curve = response->linear[channel];
     float value = 255 * orl_srgb_encode(color);
     int below = (int)value < 254 ? (int)value : 254;
     return curve[below] + (value - (float)below) * (curve[below + 1] - curve[below]);
@@ -107,16 +113,18 @@ struct estimate {
     float clip;     // confidence with respect to clipping, less without a surface; 0: nothing is painted
 };
 
-static void form_opinions(const struct orl_sensor *sensor, const struct series *s, float ev_above,
+static void form_opinions(const struct orl_sensor *sensor, const struct series_set *set, const struct series *s,
                           const struct orl_frame *picture, struct estimate *estimates, size_t stride)
 {
+    const struct orl_response *response = s->response >= 0 ? &set->scene.responses[s->response] : NULL;
+    float ev_above = s->ev - set->least_ev;
     size_t pixels = (size_t)picture->color.width * (size_t)picture->color.height;
     for (size_t i = 0; i < pixels; i++) {
         struct estimate *estimate = &estimates[i * stride];
         const float *color = picture->color.f32 + 3 * i;
         float peak = 0, scale = exp2f(-s->ev);
         for (int c = 0; c < 3; c++) {
-            float x = linearise(s, c, color[c]);
+            float x = linearise(response, c, color[c]);
             estimate->color[c] = scale * x;
             peak = fmaxf(peak, x);
         }
@@ -175,12 +183,12 @@ static enum orl_result draw_series(struct series_set *set, size_t k,
     struct series *s = &set->items[k];
     struct orl_frame picture;
     for (size_t i = 0; i < set->scene.photo_count; i++)
-        s->skip[i] = set->scene.photos[i].series != s->number || (skip && skip[i]);
+        s->skip[i] = !belongs(s, &set->scene.photos[i]) || (skip && skip[i]);
     // Antialiasing is off: all series need the same depth edges.
     struct orl_render_params render = params->render;
     render.antialias = ORL_ANTIALIAS_OFF;
     ORL_TRY(orl_renderer_draw(set->renderer, view, &render, s->skip, &picture));
-    form_opinions(&params->sensor, s, s->ev - set->least_ev, &picture, estimates + k, set->count);
+    form_opinions(&params->sensor, set, s, &picture, estimates + k, set->count);
     if (k == 0) {
         *frame = picture;
     } else {

@@ -593,6 +593,37 @@ static void response_and_vignetting_are_undone(void **state)
     teardown(&f);
 }
 
+static void root_of_wall_light(const struct orl_view *view, int x, int y, float light[3])
+{
+    (void)view, (void)x, (void)y;
+    for (int c = 0; c < 3; c++)
+        light[c] = sqrtf(WALL[c]);
+}
+
+// Two cameras, of which one has values of the root of the light, took one series.
+static void cameras_of_one_series_keep_their_curves(void **state)
+{
+    (void)state;
+    struct orl_response response;
+    for (int c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            response.linear[c][v] = powf(orl_srgb_decode((float)v / 255), 2);
+    for (int merge = 0; merge < ORL_HDR_MERGE_COUNT; merge++)
+        for (int first = -1; first <= 0; first++) {
+            struct fixture f;
+            setup_wall(&f);
+            f.scene.responses = &response;
+            f.scene.response_count = 1;
+            add_photo(&f, look(-0.2, 0), 0, first ? wall_light : root_of_wall_light)->response = first;
+            add_photo(&f, look(0.2, 0), 0, first ? root_of_wall_light : wall_light)->response = -1 - first;
+            struct orl_hdr_params params = params_of((enum orl_hdr_merge)merge, "oriel");
+            struct orl_frame frame = draw(&f, &params);
+            assert_color(&frame, MIDDLE, WALL, 0.02);
+            orl_frame_finish(&frame);
+            teardown(&f);
+        }
+}
+
 static void linear_files_keep_their_range(void **state)
 {
     (void)state;
@@ -827,6 +858,7 @@ int main(void)
         cmocka_unit_test(clipped_pixels_leave_no_mark),
         cmocka_unit_test(what_clips_beside_a_sample_makes_it_doubtful),
         cmocka_unit_test(response_and_vignetting_are_undone),
+        cmocka_unit_test(cameras_of_one_series_keep_their_curves),
         cmocka_unit_test(linear_files_keep_their_range),
         cmocka_unit_test(panoramas_show_what_is_there),
         cmocka_unit_test(panoramas_are_filled_where_none_looks),
