@@ -392,19 +392,24 @@ static enum orl_result plan_memory(struct densifier *d)
         int side = width < height ? width : height;
         need.min_side = i == 0 || side < need.min_side ? side : need.min_side;
     }
-    bool fits = orl_densify_fit(&need, asked, d->params.max_vram_bytes, &budget);
+    const size_t most = d->params.max_vram_bytes;
+    bool fits = orl_densify_fit(&need, asked, most, &budget);
+    if (!fits && (!most || budget.bytes <= most))
+        return orl_fail(d->log, ORL_ERR_GPU,
+                        "densify: a photograph of %dx%d is larger than textures of the device can be, and one with "
+                        "a side of %d cannot be halved with it", need.width, need.height, need.min_side);
     if (!fits)
         return orl_fail(d->log, ORL_ERR_GPU,
                         "densify: %zu MiB of device memory are not enough for a photograph of "
-                        "%dx%d: the least is %.1f MiB", d->params.max_vram_bytes >> 20,
-                        need.width, need.height, (double)budget.bytes / (1 << 20));
+                        "%dx%d: the least is %.1f MiB", most >> 20, need.width, need.height,
+                        (double)budget.bytes / (1 << 20));
     d->params.sources = budget.sources;
     d->shrink = d->cache.shrink = budget.shrink;
     bool less = budget.sources < asked || budget.shrink > 0;
     if (less)
         orl_logf(d->log, ORL_LOG_WARNING,
-                 "densify: %d sources at %dx%d need %.0f MiB of device memory; using less", asked,
-                 need.width, need.height,
+                 "densify: %d sources at %dx%d need larger textures than every device has, or %.0f MiB of device "
+                 "memory; using less", asked, need.width, need.height,
                  (double)orl_densify_bytes(&need, asked, 0) / (1 << 20));
     orl_logf(d->log, ORL_LOG_INFO, "densify: up to %.0f MiB on the device: %d sources, %dx%d",
              (double)budget.bytes / (1 << 20), budget.sources, need.width >> budget.shrink,

@@ -59,7 +59,8 @@ struct densify_budget {
 // Upper bound of device memory in bytes, with one photograph and its sources loaded.
 uint64_t orl_densify_bytes(const struct densify_need *need, int sources, int shrink);
 // Chooses the largest photographs, then the most sources up to `sources`, that fit into `max_bytes`
-// (0: no limit) and whose textures drivers accept. Returns false when nothing fits.
+// (0: no limit) and whose textures every device accepts. Returns false when nothing fits; *budget is then the least
+// that was tried.
 bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_bytes,
                      struct densify_budget *budget);
 // Keeps the maps in WORKSPACE/stereo that were made from the same photographs and model with the

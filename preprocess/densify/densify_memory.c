@@ -9,6 +9,9 @@ enum {
 
 // Drivers refuse larger textures, or are slow with them.
 static const uint64_t TEXTURE_MAX = (uint64_t)1 << 30;
+// Every device of OpenGL 4.5 has textures with such sides. Those of larger ones are not used: a photograph's maps must
+// be of one size on all devices, as those of parts are made on several.
+enum { TEXTURE_SIDE_MAX = 16384 };
 
 static uint64_t pixels(int width, int height, int padding)
 {
@@ -42,11 +45,12 @@ bool orl_densify_fit(const struct densify_need *need, int sources, uint64_t max_
     int fewest = sources < SOURCES_MIN ? sources : SOURCES_MIN;
     for (int shrink = 0; shrink == 0 || need->min_side >> shrink >= SIDE_MIN; shrink++)
         for (int count = sources; count >= fewest; count--) {
-            uint64_t layer = 4 * pixels(need->width >> shrink, need->height >> shrink,
-                                        need->padding);
+            int width = need->width >> shrink, height = need->height >> shrink;
+            int side = (width > height ? width : height) + 2 * need->padding;
+            uint64_t layer = 4 * pixels(width, height, need->padding);
             *budget = (struct densify_budget){.sources = count, .shrink = shrink,
                                               .bytes = orl_densify_bytes(need, count, shrink)};
-            if ((!max_bytes || budget->bytes <= max_bytes) &&
+            if ((!max_bytes || budget->bytes <= max_bytes) && side <= TEXTURE_SIDE_MAX &&
                 layer * (uint64_t)count <= TEXTURE_MAX)
                 return true;
         }

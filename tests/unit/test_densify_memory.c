@@ -69,6 +69,27 @@ static void test_large_textures(void **state)
     assert_int_equal(budget.shrink, 0);
 }
 
+// A wide panorama is halved until a source, with its padding, is no wider than any device's textures.
+static void test_wide_textures(void **state)
+{
+    (void)state;
+    struct densify_need need = photographs(16384 - 2 * 17, 500);
+    struct densify_budget budget;
+    assert_int_equal(need.padding, 17);
+    assert_true(orl_densify_fit(&need, 8, 0, &budget));
+    assert_int_equal(budget.shrink, 0);
+    need.width++;
+    assert_true(orl_densify_fit(&need, 8, 0, &budget));
+    assert_int_equal(budget.sources, 8);
+    assert_int_equal(budget.shrink, 1);
+    need = photographs(500, 40000);
+    need.min_side = 500;
+    assert_true(orl_densify_fit(&need, 8, 0, &budget));
+    assert_int_equal(budget.shrink, 2);
+    need.min_side = 40; // cannot be halved twice
+    assert_false(orl_densify_fit(&need, 8, 0, &budget));
+}
+
 static void test_nothing_fits(void **state)
 {
     (void)state;
@@ -89,6 +110,7 @@ int main(void)
         cmocka_unit_test(test_sources_go_first),
         cmocka_unit_test(test_then_size_with_all_sources_again),
         cmocka_unit_test(test_large_textures),
+        cmocka_unit_test(test_wide_textures),
         cmocka_unit_test(test_nothing_fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
