@@ -234,6 +234,8 @@ static enum orl_result job_open(struct densifier *d, size_t photo, int pass, str
 {
     const struct densify_plan *plan = &d->plans[photo];
     *job = (struct densify_job){
+        .gpu = d->gpu,
+        .params = &d->params,
         .name = densify_photo_name(&d->photos, photo),
         .seed = name_seed(d->params.seed, densify_photo_name(&d->photos, photo)),
         .view = d->photos.views[photo],
@@ -298,15 +300,13 @@ static enum orl_result clean(const struct densifier *d, const struct densify_job
 
 static enum orl_result process(struct densifier *d, size_t photo, int pass)
 {
-    const struct densify_device device = {d->gpu, &d->params};
     struct densify_maps start = {0}, maps = {0};
     struct densify_job job;
     enum orl_result result = job_open(d, photo, pass, &job);
     job.start = &start;
     if (pass)
         ORL_THEN(result, read_start(d, photo, pass - 1, &job, &start));
-    ORL_THEN(result, pass ? orl_densify_geometric(&device, &job, &maps)
-                          : orl_densify_photometric(&device, &job, &maps));
+    ORL_THEN(result, pass ? orl_densify_geometric(&job, &maps) : orl_densify_photometric(&job, &maps));
     if (job.last)
         ORL_THEN(result, clean(d, &job, &maps));
     ORL_THEN(result, write_maps(d, photo, pass, &maps));

@@ -72,10 +72,10 @@ static int half(int value)
     return value > 1 ? value / 2 : 1;
 }
 
-static struct orl_prog *program_of(const struct densify_device *device, enum program which)
+static struct orl_prog *program_of(const struct densify_job *job, enum program which)
 {
     char defines[256];
-    const struct orl_densify_params *p = device->params;
+    const struct orl_densify_params *p = job->params;
     // Coarser levels have found the rough shape, and agreement with other photographs holds planes
     // in place. Patches may therefore be small, so that a patch lies on one surface up to a pixel
     // or two from its edge.
@@ -87,7 +87,7 @@ static struct orl_prog *program_of(const struct densify_device *device, enum pro
              small ? half(p->window_radius) : radius,
              small ? half(p->window_step) : p->window_step, p->sources, orl_densify_padding(p),
              program_table[which].defines);
-    return orl_prog_get(device->gpu, program_table[which].file, NULL, defines);
+    return orl_prog_get(job->gpu, program_table[which].file, NULL, defines);
 }
 
 // --- upload ---
@@ -104,15 +104,14 @@ bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y)
     return false;
 }
 
-static enum orl_result upload_reference(struct orl_gpu *gpu, const struct densify_job *job,
-                                        struct level *level)
+static enum orl_result upload_reference(const struct densify_job *job, struct level *level)
 {
     const struct orl_image *luma = &job->reference->levels[level->number];
     struct orl_tex_params params = {.width = luma->width, .height = luma->height,
                                     .format = GL_RG8, .tag = "densify reference"};
-    ORL_TRY(orl_tex_create(gpu, &params, &level->reference));
+    ORL_TRY(orl_tex_create(job->gpu, &params, &level->reference));
     size_t count = (size_t)luma->width * (size_t)luma->height;
-    uint8_t *pixels = orl_array(orl_gpu_log(gpu), count, 2);
+    uint8_t *pixels = orl_array(orl_gpu_log(job->gpu), count, 2);
     ORL_TRY_MEMORY(pixels);
     for (size_t i = 0; i < count; i++) {
         int x = (int)(i % (size_t)luma->width), y = (int)(i / (size_t)luma->width);
@@ -154,10 +153,9 @@ static void pack_quads(const struct orl_image *luma, int padding, uint32_t *quad
     }
 }
 
-static enum orl_result upload_sources(const struct densify_device *device, const struct densify_job *job,
-                                      struct level *level)
+static enum orl_result upload_sources(const struct densify_job *job, struct level *level)
 {
-    int count = job->plan->count, pad = orl_densify_padding(device->params);
+    int count = job->plan->count, pad = orl_densify_padding(job->params);
     struct orl_tex_params params = {.layers = count, .format = GL_R32UI,
                                     .tag = "densify sources"};
     for (int k = 0; k < count; k++) {
@@ -167,8 +165,8 @@ static enum orl_result upload_sources(const struct densify_device *device, const
         params.height =
             luma->height + 2 * pad > params.height ? luma->height + 2 * pad : params.height;
     }
-    ORL_TRY(orl_tex_create(device->gpu, &params, &level->sources));
-    uint32_t *quads = orl_array(orl_gpu_log(device->gpu),
+    ORL_TRY(orl_tex_create(job->gpu, &params, &level->sources));
+    uint32_t *quads = orl_array(orl_gpu_log(job->gpu),
                                 (size_t)params.width * (size_t)params.height, sizeof *quads);
     ORL_TRY_MEMORY(quads);
     for (int k = 0; k < count; k++) {
@@ -182,8 +180,7 @@ static enum orl_result upload_sources(const struct densify_device *device, const
     return ORL_OK;
 }
 
-static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct densify_job *job,
-                                            struct level *level)
+static enum orl_result upload_source_depths(const struct densify_job *job, struct level *level)
 {
     struct orl_tex_params params = {.layers = job->plan->count, .format = GL_R32F,
                                     .tag = "densify source depths"};
@@ -192,8 +189,8 @@ static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct de
         params.width = depth->width > params.width ? depth->width : params.width;
         params.height = depth->height > params.height ? depth->height : params.height;
     }
-    ORL_TRY(orl_tex_create(gpu, &params, &level->source_depths));
-    float *inverse = orl_array(orl_gpu_log(gpu), (size_t)params.width * (size_t)params.height,
+    ORL_TRY(orl_tex_create(job->gpu, &params, &level->source_depths));
+    float *inverse = orl_array(orl_gpu_log(job->gpu), (size_t)params.width * (size_t)params.height,
                                sizeof *inverse);
     ORL_TRY_MEMORY(inverse);
     for (int k = 0; k < job->plan->count; k++) {
@@ -208,15 +205,14 @@ static enum orl_result upload_source_depths(struct orl_gpu *gpu, const struct de
     return ORL_OK;
 }
 
-static enum orl_result upload_start(struct orl_gpu *gpu, const struct densify_job *job,
-                                    struct level *level)
+static enum orl_result upload_start(const struct densify_job *job, struct level *level)
 {
     const struct orl_image *depth = &job->start->depth, *normal = &job->start->normal;
     struct orl_tex_params params = {.width = depth->width, .height = depth->height,
                                     .format = GL_RGBA32F, .tag = "densify start"};
-    ORL_TRY(orl_tex_create(gpu, &params, &level->extra));
+    ORL_TRY(orl_tex_create(job->gpu, &params, &level->extra));
     size_t count = (size_t)depth->width * (size_t)depth->height;
-    float *pixels = orl_array(orl_gpu_log(gpu), count, 4 * sizeof *pixels);
+    float *pixels = orl_array(orl_gpu_log(job->gpu), count, 4 * sizeof *pixels);
     ORL_TRY_MEMORY(pixels);
     for (size_t i = 0; i < count; i++) {
         memcpy(&pixels[4 * i], &normal->f32[3 * i], 3 * sizeof *pixels);
@@ -227,12 +223,11 @@ static enum orl_result upload_start(struct orl_gpu *gpu, const struct densify_jo
     return ORL_OK;
 }
 
-static enum orl_result upload_seeds(struct orl_gpu *gpu, const struct densify_job *job,
-                                    struct level *level)
+static enum orl_result upload_seeds(const struct densify_job *job, struct level *level)
 {
     struct orl_tex_params params = {.width = job->seeds.width, .height = job->seeds.height,
                                     .format = GL_R32F, .tag = "densify seeds"};
-    ORL_TRY(orl_tex_create(gpu, &params, &level->extra));
+    ORL_TRY(orl_tex_create(job->gpu, &params, &level->extra));
     orl_tex_write(level->extra, GL_RED, GL_FLOAT, job->seeds.f32);
     return ORL_OK;
 }
@@ -262,8 +257,7 @@ static double parallax(const struct densify_job *job, const struct orl_camera *c
     return sum > 0.0 ? sum / total : 1.0 / job->plan->w_max;
 }
 
-static void set_block(const struct densify_device *device, const struct densify_job *job,
-                      struct level *level)
+static void set_block(const struct densify_job *job, struct level *level)
 {
     struct densify_block *block = &level->block;
     struct orl_view ref = job->view;
@@ -279,8 +273,8 @@ static void set_block(const struct densify_device *device, const struct densify_
         block->extent[k][2] = (float)job->plan->sources[k].prior;
         block->extent[k][3] = (float)(1 << (shrunk - job->finest));
         // Texel centres are at whole numbers, offset by the padding.
-        source.camera.cx += orl_densify_padding(device->params) - 0.5;
-        source.camera.cy += orl_densify_padding(device->params) - 0.5;
+        source.camera.cx += orl_densify_padding(job->params) - 0.5;
+        source.camera.cy += orl_densify_padding(job->params) - 0.5;
         orl_densify_transfer(&source, &ref, &block->forward[3 * k]);
     }
     const struct orl_camera *c = &ref.camera;
@@ -302,11 +296,10 @@ static void set_block(const struct densify_device *device, const struct densify_
 
 // --- dispatch ---
 
-static enum orl_result run(const struct densify_device *device, const struct densify_job *job,
-                           struct level *level, enum program which, struct orl_tex *extra,
-                           double done)
+static enum orl_result run(const struct densify_job *job, struct level *level, enum program which,
+                           struct orl_tex *extra, double done)
 {
-    struct orl_prog *prog = program_of(device, which);
+    struct orl_prog *prog = program_of(job, which);
     enum orl_result result = ORL_OK;
     int width = level->block.area[0], height = level->block.area[1];
     bool half = which == SWEEP || which == SWEEP_FINE || which == SWEEP_GEOMETRIC;
@@ -317,30 +310,18 @@ static enum orl_result run(const struct densify_device *device, const struct den
         int end = row + band < height ? row + band : height;
         level->block.area[2] = row;
         level->block.area[3] = end;
-        orl_gpu_dispatch(device->gpu, &(struct orl_dispatch){
+        orl_gpu_dispatch(job->gpu, &(struct orl_dispatch){
             .prog = prog, ORL_PARAMS(level->block),
             .textures = {level->reference, level->sources, level->source_depths},
             .images = {level->planes, level->costs, level->view_costs, extra},
             .size = {half ? (width + 1) / 2 : width, end - row}});
-        result = orl_gpu_finish(device->gpu);
+        result = orl_gpu_finish(job->gpu);
     }
     orl_progress_report(job->progress, "densify", job->done + done, job->total, job->name);
     return result;
 }
 
-static enum orl_result sweep(const struct densify_device *device, const struct densify_job *job,
-                             struct level *level, enum program which, double done)
-{
-    for (int color = 0; color < 2; color++) {
-        level->block.run[1]++;
-        level->block.run[2] = color;
-        ORL_TRY(run(device, job, level, which, NULL, done));
-    }
-    return ORL_OK;
-}
-
-static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
-                                 struct densify_maps *maps)
+static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex, struct densify_maps *maps)
 {
     const struct orl_log *log = orl_gpu_log(gpu);
     int width = tex->params.width, height = tex->params.height;
@@ -364,127 +345,115 @@ static enum orl_result read_maps(struct orl_gpu *gpu, struct orl_tex *tex,
     return result;
 }
 
-static enum orl_result finish(const struct densify_device *device, const struct densify_job *job,
-                              struct level *level, enum program which, struct densify_maps *maps)
+static enum orl_result finish(const struct densify_job *job, struct level *level, enum program which,
+                              struct densify_maps *maps)
 {
     struct orl_tex *out = NULL;
     struct orl_tex_params params = {.width = level->block.area[0], .height = level->block.area[1],
                                     .format = GL_RGBA32F, .tag = "densify maps"};
-    enum orl_result result = orl_tex_create(device->gpu, &params, &out);
-    ORL_THEN(result, run(device, job, level, FIT, NULL, 0.95));
-    ORL_THEN(result, run(device, job, level, which, out, 1.0));
-    ORL_THEN(result, read_maps(device->gpu, out, maps));
-    orl_tex_destroy(device->gpu, &out);
+    enum orl_result result = orl_tex_create(job->gpu, &params, &out);
+    ORL_THEN(result, run(job, level, FIT, NULL, 0.95));
+    ORL_THEN(result, run(job, level, which, out, 1.0));
+    ORL_THEN(result, read_maps(job->gpu, out, maps));
+    orl_tex_destroy(job->gpu, &out);
     return result;
 }
 
-static enum orl_result level_open(const struct densify_device *device, const struct densify_job *job,
-                                  struct level *level)
+static enum orl_result level_open(const struct densify_job *job, struct level *level)
 {
     const struct orl_tex_row rows[] = {{"densify planes", GL_RGBA32F, &level->planes},
                                        {"densify costs", GL_R32F, &level->costs},
                                        {"densify view costs", GL_RGBA32UI, &level->view_costs}};
-    set_block(device, job, level);
-    ORL_TRY(orl_tex_create_rows(device->gpu, level->block.area[0], level->block.area[1], rows, ORL_COUNT(rows)));
-    ORL_TRY(upload_reference(device->gpu, job, level));
-    return upload_sources(device, job, level);
+    set_block(job, level);
+    ORL_TRY(orl_tex_create_rows(job->gpu, level->block.area[0], level->block.area[1], rows, ORL_COUNT(rows)));
+    ORL_TRY(upload_reference(job, level));
+    return upload_sources(job, level);
 }
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
+// How one level is searched: first planes, then sweeps over them.
+struct search {
+    enum program init, sweep;
+    struct orl_tex *from; // the first planes are made of this texture
+    int tries;            // first planes of a pixel, of which the best is kept
+    int sweeps;
+    int candidates, variations, views; // a sweep's: neighbours' planes, changes of the own plane, sources judged
+    float pixels, normal; // the first sweep's changes of depth and normal; they halve from sweep to sweep
+    double begin, end;    // progress
+};
 
-// Sets the perturbations of depth and normal that are tried; they halve from sweep to sweep.
-static void set_steps(struct level *level, float pixels, float normal, int number)
+static enum orl_result search_level(const struct densify_job *job, struct level *level,
+                                    const struct search *search)
 {
-    level->block.tune[0] = fmaxf(pixels * exp2f((float)-number), 0.1f);
-    level->block.tune[1] = fmaxf(normal * exp2f((float)-number), 0.05f);
-}
-
-static enum orl_result sweeps_coarsest(const struct densify_device *device, const struct densify_job *job,
-                                       struct level *level, double share)
-{
-    int count = device->params->iterations + 2;
-    level->block.run[3] = RANDOM_TRIES;
-    enum orl_result result = upload_seeds(device->gpu, job, level);
-    ORL_THEN(result, run(device, job, level, INIT_RANDOM, level->extra, 0.0));
-    level->block.tests[0] = 8;
-    level->block.tests[1] = 6;
-    level->block.tests[2] = least(VIEWS_COARSE, device->params->sources);
-    for (int i = 0; i < count && result == ORL_OK; i++) {
-        set_steps(level, 4.0f, 0.5f, i);
-        result = sweep(device, job, level, SWEEP, share * (i + 1) / count);
+    struct densify_block *block = &level->block;
+    block->run[3] = search->tries;
+    block->tests[0] = search->candidates;
+    block->tests[1] = search->variations;
+    block->tests[2] = search->views < job->params->sources ? search->views : job->params->sources;
+    enum orl_result result = run(job, level, search->init, search->from, search->begin);
+    for (int i = 0; i < search->sweeps && result == ORL_OK; i++) {
+        double done = search->begin + (search->end - search->begin) * (i + 1) / search->sweeps;
+        block->tune[0] = fmaxf(search->pixels * exp2f((float)-i), 0.1f);
+        block->tune[1] = fmaxf(search->normal * exp2f((float)-i), 0.05f);
+        for (int color = 0; color < 2 && result == ORL_OK; color++) {
+            block->run[1]++;
+            block->run[2] = color;
+            result = run(job, level, search->sweep, NULL, done);
+        }
     }
     return result;
 }
 
-static enum orl_result sweeps_finer(const struct densify_device *device, const struct densify_job *job,
-                                    struct level *level, struct orl_tex *coarse, double begin,
-                                    double end)
-{
-    int count = (device->params->iterations + 1) / 2;
-    bool fine = level->number <= job->finest + 1;
-    level->block.run[3] = 1;
-    enum orl_result result = run(device, job, level, fine ? INIT_FINE : INIT_COARSE, coarse, begin);
-    level->block.tests[0] = 4;
-    level->block.tests[1] = 4;
-    level->block.tests[2] = least(VIEWS_FINE, device->params->sources);
-    for (int i = 0; i < count && result == ORL_OK; i++) {
-        set_steps(level, 1.0f, 0.3f, i);
-        result = sweep(device, job, level, fine ? SWEEP_FINE : SWEEP,
-                       begin + (end - begin) * (i + 1) / count);
-    }
-    return result;
-}
-
-enum orl_result orl_densify_photometric(const struct densify_device *device,
-                                        const struct densify_job *job,
-                                        struct densify_maps *maps)
+enum orl_result orl_densify_photometric(const struct densify_job *job, struct densify_maps *maps)
 {
     struct level level = {0}, coarser = {0};
     enum orl_result result = ORL_OK;
     int count = job->levels;
     for (int number = count - 1; number >= job->finest && result == ORL_OK; number--) {
         // Each level has four times the pixels of the previous one.
-        double end = exp2(2.0 * (job->finest - number)), begin = 0.25 * end;
+        double end = exp2(2.0 * (job->finest - number));
         level = (struct level){.number = number};
-        result = level_open(device, job, &level);
+        result = level_open(job, &level);
         if (result != ORL_OK)
             break;
         level.block.run[1] = 1000 * number;
         level.block.limit[0] = COST_MATCHED;
-        if (number == count - 1)
-            result = sweeps_coarsest(device, job, &level, end);
-        else
-            result = sweeps_finer(device, job, &level, coarser.planes, begin, end);
-        level_finish(device->gpu, &coarser);
+        if (number == count - 1) {
+            result = upload_seeds(job, &level);
+            ORL_THEN(result, search_level(job, &level, &(struct search){
+                .init = INIT_RANDOM, .sweep = SWEEP, .from = level.extra, .tries = RANDOM_TRIES,
+                .sweeps = job->params->iterations + 2, .candidates = 8, .variations = 6,
+                .views = VIEWS_COARSE, .pixels = 4, .normal = 0.5f, .end = end}));
+        } else {
+            bool fine = number <= job->finest + 1;
+            result = search_level(job, &level, &(struct search){
+                .init = fine ? INIT_FINE : INIT_COARSE, .sweep = fine ? SWEEP_FINE : SWEEP,
+                .from = coarser.planes, .tries = 1, .sweeps = (job->params->iterations + 1) / 2,
+                .candidates = 4, .variations = 4, .views = VIEWS_FINE, .pixels = 1, .normal = 0.3f,
+                .begin = 0.25 * end, .end = end});
+        }
+        level_finish(job->gpu, &coarser);
         if (result == ORL_OK && number == job->finest)
-            result = finish(device, job, &level, FINISH_MATCHED, maps);
+            result = finish(job, &level, FINISH_MATCHED, maps);
         coarser = level;
         level = (struct level){0};
     }
-    level_finish(device->gpu, &level);
-    level_finish(device->gpu, &coarser);
+    level_finish(job->gpu, &level);
+    level_finish(job->gpu, &coarser);
     return result;
 }
 
-enum orl_result orl_densify_geometric(const struct densify_device *device, const struct densify_job *job,
-                                      struct densify_maps *maps)
+enum orl_result orl_densify_geometric(const struct densify_job *job, struct densify_maps *maps)
 {
     struct level level = {.number = job->finest};
-    enum orl_result result = level_open(device, job, &level);
-    ORL_THEN(result, upload_source_depths(device->gpu, job, &level));
-    ORL_THEN(result, upload_start(device->gpu, job, &level));
+    enum orl_result result = level_open(job, &level);
+    ORL_THEN(result, upload_source_depths(job, &level));
+    ORL_THEN(result, upload_start(job, &level));
     level.block.run[1] = 1000 * (DENSIFY_LEVELS_MAX + job->draw);
-    level.block.run[3] = 1;
-    ORL_THEN(result, run(device, job, &level, INIT_MAPS, level.extra, 0.2));
-    level.block.tests[0] = 6;
-    level.block.tests[1] = 1;
-    level.block.tests[2] = least(VIEWS_FINE, device->params->sources);
-    set_steps(&level, 0.5f, 0.15f, 0);
-    ORL_THEN(result, sweep(device, job, &level, SWEEP_GEOMETRIC, 0.9));
-    ORL_THEN(result, finish(device, job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps));
-    level_finish(device->gpu, &level);
+    ORL_THEN(result, search_level(job, &level, &(struct search){
+        .init = INIT_MAPS, .sweep = SWEEP_GEOMETRIC, .from = level.extra, .tries = 1, .sweeps = 1,
+        .candidates = 6, .variations = 1, .views = VIEWS_FINE, .pixels = 0.5f, .normal = 0.15f,
+        .begin = 0.2, .end = 0.9}));
+    ORL_THEN(result, finish(job, &level, job->last ? FINISH_LAST : FINISH_AGREED, maps));
+    level_finish(job->gpu, &level);
     return result;
 }

@@ -117,11 +117,6 @@ enum orl_result orl_densify_cache_get(struct densify_cache *cache, size_t photo,
 
 // --- one photograph on the device ---
 
-struct densify_device {
-    struct orl_gpu *gpu;
-    const struct orl_densify_params *params;
-};
-
 struct densify_maps {
     struct orl_image depth, normal; // one and three channels
     struct orl_image confidence;    // (0, 1] where there is depth
@@ -132,6 +127,8 @@ enum orl_result orl_densify_maps_init(const struct orl_log *log, int width, int 
 void orl_densify_maps_finish(struct densify_maps *maps);
 
 struct densify_job {
+    struct orl_gpu *gpu;
+    const struct orl_densify_params *params;
     const char *name;
     uint32_t seed; // of this photograph
     struct orl_view view;
@@ -153,13 +150,10 @@ struct densify_job {
 bool orl_densify_mask_at(const struct orl_image *mask, int level, int x, int y);
 
 // Matches from the coarsest to the finest level and keeps only the depths that match well.
-enum orl_result orl_densify_photometric(const struct densify_device *device,
-                                        const struct densify_job *job,
-                                        struct densify_maps *maps);
+enum orl_result orl_densify_photometric(const struct densify_job *job, struct densify_maps *maps);
 // Refines job->start at its size with the sources' depths. Keeps only depths that match well and
 // agree with a source.
-enum orl_result orl_densify_geometric(const struct densify_device *device,
-                                      const struct densify_job *job, struct densify_maps *maps);
+enum orl_result orl_densify_geometric(const struct densify_job *job, struct densify_maps *maps);
 
 // Fills holes in plain surfaces without texture, where the planes of several directions agree and
 // the photograph shows no edge on the way. Belongs to the last pass.
