@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "core/arguments.h"
 #include "core/lock.h"
 #include "core/memory.h"
 #include "io/mask.h"
@@ -17,7 +18,6 @@ ORL_OPTION_ROWS(orl_densify_options, orl_densify_params, ORL_DENSIFY_OPTIONS)
 enum {
     LEVELS_MAX = 9, // pyramid levels of the reference; sources that show the scene finer have more
     COARSEST_SIDE = 100, // the shorter side of the coarsest level is at least this
-    GEOMETRIC_PASSES_MAX = 8,
     SPECKLE_SHARE = 2000, // connected pieces smaller than pixels / SPECKLE_SHARE are dropped
 };
 
@@ -40,20 +40,12 @@ struct densifier {
 
 static enum orl_result check_params(const struct orl_log *log, const struct orl_densify_params *p)
 {
-    const struct {
-        const char *name;
-        int value, low, high;
-    } table[] = {
-        {"sources", p->sources, 1, ORL_DENSIFY_SOURCES_MAX},
-        {"iterations", p->iterations, 1, 16},
-        {"geometric_passes", p->geometric_passes, 0, GEOMETRIC_PASSES_MAX},
-        {"window_radius", p->window_radius, 1, 15},
-        {"window_step", p->window_step, 1, 4},
-    };
-    for (size_t i = 0; i < ORL_COUNT(table); i++)
-        if (table[i].value < table[i].low || table[i].value > table[i].high)
-            return orl_fail(log, ORL_ERR_ARGUMENT, "densify: %s is %d, not within [%d, %d]",
-                            table[i].name, table[i].value, table[i].low, table[i].high);
+    for (const struct orl_option *row = orl_densify_options(); row->name; row++) {
+        double value = row->kind == ORL_VALUE_INT ? orl_option_number(row, p) : row->low;
+        if (value < row->low || value > row->high)
+            return orl_fail(log, ORL_ERR_ARGUMENT, "densify: %s is %.0f, not within [%.0f, %.0f]",
+                            row->name, value, row->low, row->high);
+    }
     const struct orl_densify_part *part = p->part;
     if (part && (part->count < 1 || part->index < 0 || part->index >= part->count ||
                  part->pass < 0 || part->pass > p->geometric_passes))
