@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bridge/bridge.h"
 #include "core/memory.h"
 #include "core/vec3.h"
 
@@ -31,44 +32,24 @@ static bool is_step(float a, float b)
     return a > 0 || b > 0 ? !(fmaxf(a, b) < STEP_RATIO * fminf(a, b)) : false;
 }
 
-// Marks the pixels within STEP_REACH of a step along one axis: `step` from one pixel of a line to the
-// next, `stride` from line to line. Reads `from`, adds to `to`.
-static void spread(const uint8_t *from, uint8_t *to, size_t lines, size_t stride, size_t length,
-                   size_t step)
+// Marks the pixels near a step of depth.
+static enum orl_result find_steps(const struct orl_log *log, const struct orl_image *depth, struct orl_image *near)
 {
-    for (size_t line = 0; line < lines; line++) {
-        const uint8_t *in = from + line * stride;
-        uint8_t *out = to + line * stride;
-        size_t until = 0; // pixels before this one are near a marked one before them
-        for (size_t i = 0; i < length; i++) {
-            until = in[i * step] ? i + STEP_REACH + 1 : until;
-            out[i * step] |= i < until;
-        }
-        until = 0; // the same from the end
-        for (size_t i = 0; i < length; i++) {
-            size_t at = (length - 1 - i) * step;
-            until = in[at] ? i + STEP_REACH + 1 : until;
-            out[at] |= i < until;
-        }
-    }
-}
-
-// Sets near[i] for the pixels near a step of depth. `marks` has as many bytes.
-static void find_steps(const struct orl_image *depth, uint8_t *marks, uint8_t *near)
-{
+    struct orl_image marks;
     size_t width = (size_t)depth->width, height = (size_t)depth->height;
+    ORL_TRY(orl_image_init(log, &marks, depth->width, depth->height, 1, ORL_PIXEL_U8));
     for (size_t y = 0; y < height; y++)
         for (size_t x = 0; x < width; x++) {
             const float *z = depth->f32 + y * width + x;
+            uint8_t *mark = marks.u8 + y * width + x;
             if (x + 1 < width && is_step(z[0], z[1]))
-                marks[y * width + x] = marks[y * width + x + 1] = 1;
+                mark[0] = mark[1] = 255;
             if (y + 1 < height && is_step(z[0], z[width]))
-                marks[y * width + x] = marks[(y + 1) * width + x] = 1;
+                mark[0] = mark[width] = 255;
         }
-    memcpy(near, marks, width * height);
-    spread(marks, near, height, width, width, 1);
-    memcpy(marks, near, width * height);
-    spread(marks, near, width, 1, height, width);
+    enum orl_result result = orl_bridge_widen(log, &marks, STEP_REACH, near);
+    orl_image_finish(&marks);
+    return result;
 }
 
 // --- what other photographs say ---
@@ -144,7 +125,7 @@ static bool keeps(const struct votes *v, float own_size)
 
 // --- one map ---
 
-static void find(const struct orl_depth_map *map, const uint8_t *near,
+static void find(const struct orl_depth_map *map, const struct orl_image *near,
                  const struct passage *passages, size_t count, struct orl_fused_pixels *found)
 {
     const struct orl_camera *c = &map->view.camera;
@@ -153,7 +134,7 @@ static void find(const struct orl_depth_map *map, const uint8_t *near,
             size_t at = (size_t)y * (size_t)map->depth.width + (size_t)x;
             double z = (double)map->depth.f32[at];
             bool on_grid = x % SMOOTH_SPACING == 1 && y % SMOOTH_SPACING == 1;
-            if (!(z > 0) || !(near[at] || on_grid))
+            if (!(z > 0) || !(near->u8[at] || on_grid))
                 continue;
             const double q[3] = {(x + 0.5 - c->cx) / c->fx * z, (y + 0.5 - c->cy) / c->fy * z, z};
             float size = (float)(z / c->fx);
@@ -174,23 +155,21 @@ enum orl_result orl_fuse_pixels_find(const struct orl_log *log, const struct orl
     const struct orl_depth_map *map = &maps[which];
     size_t pixels = (size_t)map->depth.width * (size_t)map->depth.height, count = 0;
     struct passage *passages = orl_array(log, other_count + 1, sizeof *passages);
-    uint8_t *marks = orl_array(log, pixels + 1, 1), *near = orl_array(log, pixels + 1, 1);
+    struct orl_image near = {0};
     *found = (struct orl_fused_pixels){.pixel = orl_array(log, pixels + 1, sizeof *found->pixel),
                                        .agree = orl_array(log, pixels + 1, 1)};
-    bool room = passages && marks && near && found->pixel && found->agree;
-    if (room) {
-        for (size_t i = 0; i < other_count; i++)
-            if (maps[others[i]].depth.f32)
-                passages[count++] = passage_between(map, &maps[others[i]]);
-        find_steps(&map->depth, marks, near);
-        find(map, near, passages, count, found);
-    } else {
+    enum orl_result result = passages && found->pixel && found->agree ? find_steps(log, &map->depth, &near)
+                                                                      : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < other_count; i++)
+        if (maps[others[i]].depth.f32)
+            passages[count++] = passage_between(map, &maps[others[i]]);
+    if (result == ORL_OK)
+        find(map, &near, passages, count, found);
+    else
         orl_fused_pixels_finish(found);
-    }
     free(passages);
-    free(marks);
-    free(near);
-    return room ? ORL_OK : ORL_ERR_MEMORY;
+    orl_image_finish(&near);
+    return result;
 }
 
 void orl_fused_pixels_finish(struct orl_fused_pixels *found)

@@ -132,22 +132,17 @@ static void find_planes(struct outline *o, const struct orl_camera *camera)
 // Marks large holes. What small ones hide is not known: it may be the surface itself.
 static enum orl_result find_open(const struct orl_log *log, struct outline *o)
 {
-    struct orl_image holes = {0}, labels = {0};
-    size_t count = (size_t)o->luma->width * (size_t)o->luma->height, pieces = 0, *size = NULL;
-    enum orl_result result =
-        orl_image_init(log, &holes, o->luma->width, o->luma->height, 1, ORL_PIXEL_U8);
+    struct orl_image surface = {0}, closed = {0};
+    size_t count = (size_t)o->luma->width * (size_t)o->luma->height;
+    const struct orl_mask_cleaning small = {.hole_px = (int)((count + OPEN_SHARE - 1) / OPEN_SHARE)};
+    enum orl_result result = orl_image_init(log, &surface, o->luma->width, o->luma->height, 1, ORL_PIXEL_U8);
     for (size_t at = 0; result == ORL_OK && at < count; at++)
-        holes.u8[at] = o->plane[3 * at] > 0 ? 0 : 255;
-    ORL_THEN(result, orl_bridge_label(log, &holes, &labels, &pieces));
-    if (result == ORL_OK && !(size = orl_array(log, pieces + 1, sizeof *size)))
-        result = ORL_ERR_MEMORY;
+        surface.u8[at] = o->plane[3 * at] > 0 ? 255 : 0;
+    ORL_THEN(result, orl_bridge_clean_mask(log, &surface, &small, &closed));
     for (size_t at = 0; result == ORL_OK && at < count; at++)
-        size[(size_t)labels.f32[at]]++;
-    for (size_t at = 0; result == ORL_OK && at < count; at++)
-        o->open[at] = labels.f32[at] > 0 && size[(size_t)labels.f32[at]] * OPEN_SHARE >= count;
-    free(size);
-    orl_image_finish(&holes);
-    orl_image_finish(&labels);
+        o->open[at] = !closed.u8[at];
+    orl_image_finish(&surface);
+    orl_image_finish(&closed);
     return result;
 }
 

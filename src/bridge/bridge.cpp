@@ -21,17 +21,24 @@ cv::Mat as_mat(const struct orl_image *image)
     return cv::Mat(image->height, image->width, CV_MAKETYPE(depth, image->channels), image->data);
 }
 
+bool is(const struct orl_image *image, enum orl_pixel type, int channels)
+{
+    return image->type == type && image->channels == channels;
+}
+
 struct shape {
     int width, height, channels;
     enum orl_pixel type;
 };
 
 // Makes `to`, and runs `filter` on matrices that share the pixels of `from` and `to`. An exception becomes a result code
-// and empties `to`.
+// and empties `to`. fits: `from` is what the filter takes.
 template <typename Filter>
-enum orl_result run(const struct orl_log *log, const struct orl_image *from, const shape &made, struct orl_image *to,
-                    Filter filter)
+enum orl_result run(const struct orl_log *log, bool fits, const struct orl_image *from, const shape &made,
+                    struct orl_image *to, Filter filter)
 {
+    *to = orl_image();
+    ORL_REQUIRE(log, fits && from->data);
     enum orl_result result = orl_image_init(log, to, made.width, made.height, made.channels, made.type);
     if (result != ORL_OK)
         return result;
@@ -98,10 +105,8 @@ cv::Mat disc(int diameter)
 enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_image *image, int taps,
                                 double sigma_px, struct orl_image *blurred)
 {
-    *blurred = orl_image();
-    ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->data);
-    ORL_REQUIRE(log, taps >= 1 && taps <= 255 && taps % 2 == 1 && sigma_px > 0);
-    return run(log, image, {image->width, image->height, image->channels, ORL_PIXEL_F32}, blurred,
+    bool fits = image->type == ORL_PIXEL_F32 && taps >= 1 && taps <= 255 && taps % 2 == 1 && sigma_px > 0;
+    return run(log, fits, image, {image->width, image->height, image->channels, ORL_PIXEL_F32}, blurred,
                [&](const cv::Mat &source, cv::Mat &target) {
         cv::GaussianBlur(source, target, cv::Size(taps, taps), sigma_px, sigma_px,
                          cv::BORDER_REPLICATE);
@@ -111,19 +116,15 @@ enum orl_result orl_bridge_blur(const struct orl_log *log, const struct orl_imag
 enum orl_result orl_bridge_median(const struct orl_log *log, const struct orl_image *image,
                                   struct orl_image *median)
 {
-    *median = orl_image();
-    ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->channels == 1 && image->data);
-    return run(log, image, {image->width, image->height, 1, ORL_PIXEL_F32}, median,
+    return run(log, is(image, ORL_PIXEL_F32, 1), image, {image->width, image->height, 1, ORL_PIXEL_F32}, median,
                [](const cv::Mat &source, cv::Mat &target) { cv::medianBlur(source, target, 5); });
 }
 
 enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_image *image,
                                   int width, int height, struct orl_image *resized)
 {
-    *resized = orl_image();
-    ORL_REQUIRE(log, image->data);
     bool shrinks = width <= image->width && height <= image->height;
-    return run(log, image, {width, height, image->channels, image->type}, resized,
+    return run(log, true, image, {width, height, image->channels, image->type}, resized,
                [&](const cv::Mat &source, cv::Mat &target) {
         cv::resize(source, target, target.size(), 0, 0,
                    shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
@@ -133,9 +134,8 @@ enum orl_result orl_bridge_resize(const struct orl_log *log, const struct orl_im
 enum orl_result orl_bridge_reduce(const struct orl_log *log, const struct orl_image *image,
                                   int width, int height, struct orl_image *reduced)
 {
-    *reduced = orl_image();
-    ORL_REQUIRE(log, image->data && width <= image->width && height <= image->height);
-    return run(log, image, {width, height, image->channels, image->type}, reduced,
+    bool fits = width <= image->width && height <= image->height;
+    return run(log, fits, image, {width, height, image->channels, image->type}, reduced,
                [&](const cv::Mat &source, cv::Mat &target) {
         // The variance of a box of width w is w * w / 12; that of a triangle of this height is twice it.
         cv::Mat blurred;
@@ -150,9 +150,7 @@ enum orl_result orl_bridge_reduce(const struct orl_log *log, const struct orl_im
 enum orl_result orl_bridge_tonemap(const struct orl_log *log, const struct orl_image *image,
                                    enum orl_tonemap kind, struct orl_image *mapped)
 {
-    *mapped = orl_image();
-    ORL_REQUIRE(log, image->type == ORL_PIXEL_F32 && image->channels == 3 && image->data);
-    return run(log, image, {image->width, image->height, 3, ORL_PIXEL_F32}, mapped,
+    return run(log, is(image, ORL_PIXEL_F32, 3), image, {image->width, image->height, 3, ORL_PIXEL_F32}, mapped,
                [&](const cv::Mat &source, cv::Mat &target) {
         // The operators divide by the range and by the mean.
         double least = 0, most = 0;
@@ -188,8 +186,7 @@ enum orl_result orl_bridge_response(const struct orl_log *log, enum orl_calibrat
                                     float linear[3][256])
 {
     struct orl_image curve;
-    ORL_REQUIRE(log, values->type == ORL_PIXEL_U8 && values->channels == 3 && values->data);
-    enum orl_result result = run(log, values, {1, 256, 3, ORL_PIXEL_F32}, &curve,
+    enum orl_result result = run(log, is(values, ORL_PIXEL_U8, 3), values, {1, 256, 3, ORL_PIXEL_F32}, &curve,
                                  [&](const cv::Mat &source, cv::Mat &target) {
         std::vector<cv::Mat> images;
         for (int y = 0; y < source.rows; y++)
@@ -210,14 +207,13 @@ enum orl_result orl_bridge_response(const struct orl_log *log, enum orl_calibrat
 enum orl_result orl_bridge_remap(const struct orl_log *log, const struct orl_image *image,
                                  const struct orl_image *map, struct orl_image *remapped)
 {
+    bool fits = map->data && is(map, ORL_PIXEL_F32, 2);
     *remapped = orl_image();
-    ORL_REQUIRE(log, image->data && map->data);
-    ORL_REQUIRE(log, map->type == ORL_PIXEL_F32 && map->channels == 2);
     // OpenCV's remap stores row and column numbers in 16 bits.
     if (image->width >= SHRT_MAX || image->height >= SHRT_MAX)
         return orl_fail(log, ORL_ERR_UNSUPPORTED, "a picture of %dx%d pixels is too large here",
                         image->width, image->height);
-    return run(log, image, {map->width, map->height, image->channels, image->type}, remapped,
+    return run(log, fits, image, {map->width, map->height, image->channels, image->type}, remapped,
                [&](const cv::Mat &source, cv::Mat &target) {
         cv::remap(source, target, as_mat(map), cv::noArray(), cv::INTER_LINEAR,
                   cv::BORDER_CONSTANT, cv::Scalar());
@@ -228,9 +224,7 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
                                       const struct orl_mask_cleaning *cleaning,
                                       struct orl_image *cleaned)
 {
-    *cleaned = orl_image();
-    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    return run(log, mask, {mask->width, mask->height, 1, ORL_PIXEL_U8}, cleaned,
+    return run(log, is(mask, ORL_PIXEL_U8, 1), mask, {mask->width, mask->height, 1, ORL_PIXEL_U8}, cleaned,
                [&](const cv::Mat &source, cv::Mat &target) {
         source.copyTo(target);
         if (cleaning->open_px > 1)
@@ -243,13 +237,22 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
     });
 }
 
+enum orl_result orl_bridge_widen(const struct orl_log *log, const struct orl_image *mask, int reach,
+                                 struct orl_image *widened)
+{
+    return run(log, is(mask, ORL_PIXEL_U8, 1), mask, {mask->width, mask->height, 1, ORL_PIXEL_U8}, widened,
+               [&](const cv::Mat &source, cv::Mat &target) {
+        cv::dilate(source, target, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+    });
+}
+
 enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_image *mask,
                                   int *largest, int *at_border)
 {
     struct orl_image none; // the pieces are no picture
     *largest = *at_border = 0;
-    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    enum orl_result result = run(log, mask, {1, 1, 1, ORL_PIXEL_U8}, &none, [&](const cv::Mat &source, cv::Mat &) {
+    enum orl_result result = run(log, is(mask, ORL_PIXEL_U8, 1), mask, {1, 1, 1, ORL_PIXEL_U8}, &none,
+                                 [&](const cv::Mat &source, cv::Mat &) {
         cv::Mat labels, stats, centroids;
         int count = cv::connectedComponentsWithStats(source != 0, labels, stats, centroids, 8);
         for (int i = 1; i < count; i++) { // piece 0 is what is outside
@@ -268,10 +271,8 @@ enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_im
 enum orl_result orl_bridge_label(const struct orl_log *log, const struct orl_image *mask,
                                  struct orl_image *labels, size_t *count)
 {
-    *labels = orl_image();
     *count = 0;
-    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    return run(log, mask, {mask->width, mask->height, 1, ORL_PIXEL_F32}, labels,
+    return run(log, is(mask, ORL_PIXEL_U8, 1), mask, {mask->width, mask->height, 1, ORL_PIXEL_F32}, labels,
                [&](const cv::Mat &source, cv::Mat &target) {
         cv::Mat numbers;
         int pieces = cv::connectedComponents(source != 0, numbers, 4, CV_32S);
@@ -283,9 +284,7 @@ enum orl_result orl_bridge_label(const struct orl_log *log, const struct orl_ima
 enum orl_result orl_bridge_distance(const struct orl_log *log, const struct orl_image *mask,
                                     struct orl_image *distance)
 {
-    *distance = orl_image();
-    ORL_REQUIRE(log, mask->data && mask->type == ORL_PIXEL_U8 && mask->channels == 1);
-    return run(log, mask, {mask->width, mask->height, 1, ORL_PIXEL_F32}, distance,
+    return run(log, is(mask, ORL_PIXEL_U8, 1), mask, {mask->width, mask->height, 1, ORL_PIXEL_F32}, distance,
                [&](const cv::Mat &source, cv::Mat &target) {
         // Each distance is to the nearest pixel of the other side, half a pixel past the outline.
         cv::Mat to_subject, to_outside;

@@ -57,6 +57,10 @@ enum orl_result orl_bridge_clean_mask(const struct orl_log *log, const struct or
                                       const struct orl_mask_cleaning *cleaning,
                                       struct orl_image *cleaned) ORL_CHECK_RESULT;
 
+// Marks the pixels of a mask (U8 x1, 0: outside) within `reach` rows and columns of a marked one too.
+enum orl_result orl_bridge_widen(const struct orl_log *log, const struct orl_image *mask, int reach,
+                                 struct orl_image *widened) ORL_CHECK_RESULT;
+
 // Pixels of the largest connected piece of a mask (U8 x1, 0: outside), and of the largest one that
 // touches the picture's border; 0 if there is none.
 enum orl_result orl_bridge_pieces(const struct orl_log *log, const struct orl_image *mask,
