@@ -7,6 +7,7 @@
 #include "core/color.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/order.h"
 #include "io/picture.h"
 #include "scene/depth_buffer.h"
 
@@ -151,8 +152,7 @@ struct taking {
     const struct orl_points *points;
     size_t stride;
     struct orl_observation *items;
-    uint32_t *item_points;
-    size_t count, item_capacity, point_capacity;
+    size_t count, capacity;
 };
 
 static bool faces(const struct orl_points *points, size_t i, const double eye[3])
@@ -181,7 +181,7 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
                                   const struct pyramid *pyramid, size_t point)
 {
     double pixel[2], depth;
-    struct orl_observation item = {.photo = photo};
+    struct orl_observation item = {.point = (uint32_t)point, .photo = photo};
     if (!orl_point_project(view, t->points->position[point], pixel, &depth) ||
         !faces(t->points, point, eye) ||
         !orl_depth_buffer_shows(buffer, pixel, depth))
@@ -190,11 +190,9 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
     double radius = fmax((double)t->points->radius[point] * view->camera.fx / depth, 3.0);
     if (!take_patch(pyramid, pixel, radius, &item))
         return ORL_OK;
-    ORL_TRY(ORL_GROW(t->log, t->items, t->item_capacity, t->count));
-    ORL_TRY(ORL_GROW(t->log, t->item_points, t->point_capacity, t->count));
+    ORL_TRY(ORL_GROW(t->log, t->items, t->capacity, t->count));
     item.r2 = (float)squared_radius(&view->camera, pixel);
-    t->items[t->count] = item;
-    t->item_points[t->count++] = (uint32_t)point;
+    t->items[t->count++] = item;
     return ORL_OK;
 }
 
@@ -231,9 +229,8 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
             result = take_photo(&t, &photos[i], (uint32_t)i);
         orl_progress_report(progress, "expose", (double)(i + 1), (double)photo_count + 1, NULL);
     }
-    ORL_THEN(result, orl_samples_collect(log, t.items, t.item_points, t.count, points->count, samples));
+    ORL_THEN(result, orl_samples_collect(log, t.items, t.count, samples));
     free(t.items);
-    free(t.item_points);
     return result;
 }
 
@@ -247,38 +244,30 @@ static bool is_kept(size_t index, size_t seen, size_t point)
     return turned * ORL_SAMPLES_PER_POINT / seen != (turned + 1) * ORL_SAMPLES_PER_POINT / seen;
 }
 
-enum orl_result orl_samples_collect(const struct orl_log *log,
-                                    const struct orl_observation *observations,
-                                    const uint32_t *points, size_t count, size_t point_limit,
+enum orl_result orl_samples_collect(const struct orl_log *log, struct orl_observation *observations, size_t count,
                                     struct orl_samples *samples)
 {
-    memset(samples, 0, sizeof *samples);
-    size_t *at = orl_array(log, point_limit, 3 * sizeof *at);
-    ORL_TRY_MEMORY(at);
-    size_t *seen = at + point_limit, *passed = seen + point_limit;
-    samples->first = orl_array(log, point_limit + 1, sizeof *samples->first);
-    samples->items = orl_array(log, count, sizeof *samples->items);
-    enum orl_result result = samples->first && samples->items ? ORL_OK : ORL_ERR_MEMORY;
-    for (size_t i = 0; result == ORL_OK && i < count; i++)
-        seen[points[i]]++;
-    for (size_t p = 0; result == ORL_OK && p < point_limit; p++) {
-        at[p] = samples->count;
-        if (seen[p] < 2)
-            continue;
-        samples->first[samples->point_count++] = samples->count;
-        samples->count += seen[p] < ORL_SAMPLES_PER_POINT ? seen[p] : ORL_SAMPLES_PER_POINT;
-    }
-    if (result == ORL_OK)
-        samples->first[samples->point_count] = samples->count;
-    for (size_t i = 0; result == ORL_OK && i < count; i++) {
-        size_t p = points[i];
-        if (seen[p] > 1 && is_kept(passed[p]++, seen[p], p))
-            samples->items[at[p]++] = observations[i];
-    }
-    free(at);
-    if (result != ORL_OK)
+    *samples = (struct orl_samples){.first = orl_array(log, count / 2 + 1, sizeof *samples->first),
+                                    .items = orl_array(log, count, sizeof *samples->items)};
+    if (!samples->first || !samples->items) {
         orl_samples_finish(samples);
-    return result;
+        return ORL_ERR_MEMORY;
+    }
+    if (count)
+        qsort(observations, count, sizeof *observations, orl_order_pairs);
+    for (size_t begin = 0, end = 0; begin < count; begin = end) {
+        uint32_t point = observations[begin].point;
+        while (end < count && observations[end].point == point)
+            end++;
+        if (end - begin < 2)
+            continue;
+        samples->point_count++;
+        for (size_t i = begin; i < end; i++)
+            if (is_kept(i - begin, end - begin, point))
+                samples->items[samples->count++] = observations[i];
+        samples->first[samples->point_count] = samples->count;
+    }
+    return ORL_OK;
 }
 
 void orl_samples_finish(struct orl_samples *samples)

@@ -9,7 +9,7 @@
 // What one photograph shows of a point: the mean of a patch without edges that does not clip in
 // every channel.
 struct orl_observation {
-    uint32_t photo;
+    uint32_t point, photo;
     float value[3]; // 8-bit values, [0, 255]; undefined in channels that clip
     uint8_t clipped; // bit c: channel c has clipped or black pixels
     float r2;       // squared distance from the principal point, in half diagonals
@@ -31,11 +31,9 @@ enum orl_result orl_samples_take(const struct orl_log *log, const struct orl_pro
                                  size_t photo_count, const struct orl_points *points,
                                  struct orl_samples *samples) ORL_CHECK_RESULT;
 void orl_samples_finish(struct orl_samples *samples);
-// Sorts observations by their points, points[i] < point_limit. A point keeps at most
-// ORL_SAMPLES_PER_POINT observations.
-enum orl_result orl_samples_collect(const struct orl_log *log,
-                                    const struct orl_observation *observations,
-                                    const uint32_t *points, size_t count, size_t point_limit,
+// Sorts observations by their points and photographs, and takes those of points with two or more. A point keeps at most
+// ORL_SAMPLES_PER_POINT of them.
+enum orl_result orl_samples_collect(const struct orl_log *log, struct orl_observation *observations, size_t count,
                                     struct orl_samples *samples) ORL_CHECK_RESULT;
 
 #endif

@@ -56,7 +56,6 @@ static struct orl_samples make_samples(const struct camera *cameras, double outl
                                        double darkest_ev, double brightest_ev)
 {
     static struct orl_observation items[POINTS * SEEN];
-    static uint32_t points[POINTS * SEEN];
     struct orl_samples samples;
     uint32_t state = 1;
     size_t count = 0;
@@ -67,7 +66,8 @@ static struct orl_samples make_samples(const struct camera *cameras, double outl
         uint32_t first = word(&state) % (PHOTOS - SEEN + 1);
         for (uint32_t k = 0; k < SEEN; k++) {
             const struct camera *camera = &cameras[first + k];
-            struct orl_observation item = {.photo = first + k, .r2 = (float)uniform(&state)};
+            struct orl_observation item = {.point = p, .photo = first + k,
+                                           .r2 = (float)uniform(&state)};
             double other = uniform(&state) < outliers ? 3 * uniform(&state) : 1;
             bool good = true;
             for (int c = 0; c < 3; c++) {
@@ -79,11 +79,10 @@ static struct orl_samples make_samples(const struct camera *cameras, double outl
                 good = good && item.value[c] > 1 && item.value[c] < 254;
             }
             items[count] = item;
-            points[count] = p;
             count += good;
         }
     }
-    assert_int_equal(orl_samples_collect(NULL, items, points, count, POINTS, &samples), ORL_OK);
+    assert_int_equal(orl_samples_collect(NULL, items, count, &samples), ORL_OK);
     return samples;
 }
 
@@ -92,13 +91,10 @@ static void samples_keep_points_seen_twice(void **state)
     (void)state;
     enum { MANY = 100 };
     struct orl_observation items[MANY + 4];
-    uint32_t points[MANY + 4];
     struct orl_samples samples;
-    for (uint32_t i = 0; i < MANY + 4; i++) {
-        items[i] = (struct orl_observation){.photo = i};
-        points[i] = i < MANY ? 2 : i < MANY + 1 ? 0 : 1;
-    }
-    assert_int_equal(orl_samples_collect(NULL, items, points, MANY + 4, 4, &samples), ORL_OK);
+    for (uint32_t i = 0; i < MANY + 4; i++)
+        items[i] = (struct orl_observation){.point = i < MANY ? 2 : i < MANY + 1 ? 0 : 1, .photo = i};
+    assert_int_equal(orl_samples_collect(NULL, items, MANY + 4, &samples), ORL_OK);
     assert_int_equal(samples.point_count, 2);
     assert_int_equal(samples.first[1], 3); // of the point seen three times
     assert_int_equal(samples.count, 3 + 32);
@@ -191,16 +187,14 @@ static void dark_samples_have_little_say(void **state)
     (void)state;
     enum { EACH = 200 };
     static struct orl_observation items[4 * EACH];
-    static uint32_t points[4 * EACH];
     struct orl_samples samples;
     struct orl_exposed photos[2] = {0};
     struct orl_alignment alignment;
     for (uint32_t i = 0; i < 4 * EACH; i++) {
         float value = i / 2 < EACH ? 200 : i % 2 ? 4 : 3;
-        points[i] = i / 2;
-        items[i] = (struct orl_observation){.photo = i % 2, .value = {value, value, value}};
+        items[i] = (struct orl_observation){.point = i / 2, .photo = i % 2, .value = {value, value, value}};
     }
-    assert_int_equal(orl_samples_collect(NULL, items, points, 4 * EACH, 2 * EACH, &samples), ORL_OK);
+    assert_int_equal(orl_samples_collect(NULL, items, 4 * EACH, &samples), ORL_OK);
     assert_int_equal(orl_align(NULL, &samples, photos, 2, 2, &alignment), ORL_OK);
     assert_true(fabs(log2((double)photos[0].gain[1] / (double)photos[1].gain[1])) < 0.1);
     orl_samples_finish(&samples);

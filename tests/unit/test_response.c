@@ -90,25 +90,22 @@ static struct orl_samples samples_of(const struct stack *stack)
 {
     size_t count = 0, points = (size_t)(stack->side * stack->side);
     struct orl_observation *items = calloc(points * (size_t)stack->photos, sizeof *items);
-    uint32_t *owners = calloc(points * (size_t)stack->photos, sizeof *owners);
     struct orl_samples samples;
-    assert_true(items && owners);
+    assert_non_null(items);
     for (uint32_t at = 0; at < points; at++)
         for (int i = 0; i < stack->photos; i++) {
             struct orl_observation *item = &items[count];
-            *item = (struct orl_observation){.photo = (uint32_t)i};
+            *item = (struct orl_observation){.point = at, .photo = (uint32_t)i};
             for (int c = 0; c < 3; c++) {
                 uint8_t value = pixel(stack, i, (int)at)[c];
                 bool clipped = value < 1 || value > 253;
                 item->value[c] = clipped ? 100 : value; // means nothing
                 item->clipped |= (uint8_t)(clipped << c);
             }
-            owners[count] = at;
             count += item->clipped != 7;
         }
-    assert_int_equal(orl_samples_collect(NULL, items, owners, count, points, &samples), ORL_OK);
+    assert_int_equal(orl_samples_collect(NULL, items, count, &samples), ORL_OK);
     free(items);
-    free(owners);
     return samples;
 }
 
