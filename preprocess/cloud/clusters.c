@@ -1,5 +1,6 @@
 #include "preprocess/cloud/clusters.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,28 +10,18 @@
 
 // --- members: photographs divided by where they stand ---
 
-struct stand {
-    double at[3];
-    size_t image;
-    int axis; // by which stands are sorted
-};
+// Where each image of the model was taken.
+typedef double place[3];
 
-static int compare_stands(const void *left, const void *right)
-{
-    const struct stand *a = left, *b = right;
-    double d = a->at[a->axis] - b->at[b->axis];
-    return d < 0 ? -1 : d > 0 ? 1 : a->image < b->image ? -1 : a->image > b->image;
-}
-
-static int widest_axis(const struct stand *stands, size_t count)
+static int widest_axis(const struct orl_ranked *images, size_t count, const place *places)
 {
     double widest = -1;
     int axis = 0;
     for (int k = 0; k < 3; k++) {
-        double low = stands[0].at[k], high = low;
+        double low = places[images[0].index][k], high = low;
         for (size_t i = 1; i < count; i++) {
-            low = stands[i].at[k] < low ? stands[i].at[k] : low;
-            high = stands[i].at[k] > high ? stands[i].at[k] : high;
+            low = fmin(low, places[images[i].index][k]);
+            high = fmax(high, places[images[i].index][k]);
         }
         if (high - low > widest)
             widest = high - low, axis = k;
@@ -38,42 +29,43 @@ static int widest_axis(const struct stand *stands, size_t count)
     return axis;
 }
 
-// Divides the stands into `parts` clusters from number `first` on, as equal as can be, by halves
-// across the longest axis.
-static void divide(struct stand *stands, size_t count, int first, int parts, int *member)
+// Divides images into `parts` clusters from number `first` on, as equal as can be, by halves across the longest axis.
+static void divide(struct orl_ranked *images, size_t count, const place *places, int first, int parts, int *member)
 {
     if (parts == 1) {
         for (size_t i = 0; i < count; i++)
-            member[stands[i].image] = first;
+            member[images[i].index] = first;
         return;
     }
-    int axis = widest_axis(stands, count), half = parts / 2;
+    int axis = widest_axis(images, count, places), half = parts / 2;
     for (size_t i = 0; i < count; i++)
-        stands[i].axis = axis;
-    qsort(stands, count, sizeof *stands, compare_stands);
+        images[i].key = places[images[i].index][axis];
+    qsort(images, count, sizeof *images, orl_order_ranked);
     size_t left = count * (size_t)half / (size_t)parts;
-    divide(stands, left, first, half, member);
-    divide(stands + left, count - left, first + half, parts - half, member);
+    divide(images, left, places, first, half, member);
+    divide(images + left, count - left, places, first + half, parts - half, member);
 }
 
 static enum orl_result set_members(const struct orl_log *log, const struct orl_names *train,
                                    struct orl_clusters *clusters)
 {
     const struct orl_colmap_model *model = clusters->model;
-    struct stand *stands = orl_array(log, model->image_count, sizeof *stands);
-    ORL_TRY_MEMORY(stands);
+    struct orl_ranked *images = orl_array(log, model->image_count, sizeof *images);
+    place *places = orl_array(log, model->image_count, sizeof *places);
+    enum orl_result result = images && places ? ORL_OK : ORL_ERR_MEMORY;
     size_t count = 0;
-    for (size_t i = 0; i < model->image_count; i++) {
+    for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         clusters->member[i] = -1;
-        if (!orl_names_contain(train, model->images[i].name))
-            continue;
-        orl_pose_centre(&model->images[i].cam_from_world, stands[count].at);
-        stands[count++].image = i;
+        orl_pose_centre(&model->images[i].cam_from_world, places[i]);
+        if (orl_names_contain(train, model->images[i].name))
+            images[count++].index = i;
     }
     clusters->count = count ? (count + clusters->size - 1) / clusters->size : 1;
-    divide(stands, count, 0, (int)clusters->count, clusters->member);
-    free(stands);
-    return ORL_OK;
+    if (result == ORL_OK)
+        divide(images, count, (const place *)places, 0, (int)clusters->count, clusters->member);
+    free(images);
+    free(places);
+    return result;
 }
 
 // --- owners of sparse points ---

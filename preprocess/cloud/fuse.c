@@ -57,13 +57,6 @@ json_t *orl_stage_fuse_settings(const struct orl_job *job)
     return json_pack("{s:o*}", "cluster", most > (size_t)size ? json_integer(size) : NULL);
 }
 
-static enum orl_result write_cloud(struct orl_job *job, const char *path, struct orl_points *points)
-{
-    for (size_t i = 0; i < points->count; i++)
-        points->radius[i] = 0; // the next stage sets the radius
-    return orl_points_write(job->log, path, points, false, NULL);
-}
-
 // --- one cluster ---
 
 // Fuses a cluster and writes the points that belong to it.
@@ -76,7 +69,7 @@ static enum orl_result fuse_members(struct orl_job *job, const struct orl_cluste
     ORL_THEN(result, orl_fuse_photographs(job, clusters->model, &names, cluster,
                                           (double)clusters->count, &points));
     ORL_THEN(result, orl_clusters_keep_own(job->log, clusters, cluster, &points));
-    ORL_THEN(result, write_cloud(job, out, &points));
+    ORL_THEN(result, orl_points_write(job->log, out, &points, false, NULL));
     orl_points_finish(&points);
     orl_names_finish(&names);
     return result;
@@ -154,7 +147,7 @@ static enum orl_result fuse_all(struct orl_job *job, const struct orl_colmap_mod
     enum orl_result result = orl_fuse_photographs(job, model, train, 0, 1, &points);
     if (result == ORL_OK && job->params->hull != ORL_HULL_NONE)
         result = orl_close_hull(job, model, train, &points, record);
-    ORL_THEN(result, write_cloud(job, path, &points));
+    ORL_THEN(result, orl_points_write(job->log, path, &points, false, NULL));
     *count = points.count;
     orl_points_finish(&points);
     return result;
