@@ -262,33 +262,15 @@ static bool is_cut(const struct orl_hull *cube, const float position[3])
     return cut;
 }
 
-static enum orl_result surface_points(const struct orl_log *log, const struct orl_hull *cube,
-                                      const struct orl_mesh *mesh, struct orl_points *surface)
+// `surface` has room for as many points as the mesh has vertices.
+static void surface_points(const struct orl_hull *cube, const struct orl_mesh *mesh, struct orl_points *surface)
 {
-    ORL_TRY(orl_points_init(log, surface, mesh->vertex_count));
     surface->count = 0;
     for (size_t i = 0; i < mesh->vertex_count; i++)
         if (orl_point_usable(mesh->position[i]) && !is_cut(cube, mesh->position[i])) {
             memcpy(surface->position[surface->count], mesh->position[i], sizeof mesh->position[i]);
             memcpy(surface->normal[surface->count++], mesh->normal[i], sizeof mesh->normal[i]);
         }
-    return ORL_OK;
-}
-
-// Moves the points of which `taken` says so to `out`.
-static enum orl_result take(const struct orl_log *log, const bool *taken, struct orl_points *points,
-                            struct orl_points *out)
-{
-    size_t left = 0;
-    ORL_TRY(orl_points_init(log, out, points->count));
-    out->count = 0;
-    for (size_t i = 0; i < points->count; i++)
-        if (taken[i])
-            orl_points_copy(points, i, out, out->count++);
-        else
-            orl_points_copy(points, i, points, left++);
-    points->count = left;
-    return ORL_OK;
 }
 
 // Drops the points that are within `reach` of another cloud.
@@ -312,40 +294,42 @@ static enum orl_result drop_near(const struct orl_log *log, const struct orl_poi
     return result;
 }
 
-// The clouds one after the other.
-static enum orl_result join(const struct orl_log *log, const struct orl_points *const clouds[3],
-                            struct orl_points *joined)
+// `count` points of a cloud, which stay its own.
+static struct orl_points part_of(const struct orl_points *points, size_t first, size_t count)
 {
-    size_t count = 0;
-    for (int c = 0; c < 3; c++)
-        count += clouds[c]->count;
-    enum orl_result result = orl_points_init(log, joined, count);
-    count = 0;
-    for (int c = 0; result == ORL_OK && c < 3; c++)
-        for (size_t i = 0; i < clouds[c]->count; i++)
-            orl_points_copy(clouds[c], i, joined, count++);
-    return result;
+    return (struct orl_points){.count = count, .position = points->position + first, .normal = points->normal + first,
+                               .radius = points->radius + first, .color = points->color + first,
+                               .photographs = points->photographs + first};
 }
 
 static enum orl_result replace_points(const struct orl_log *log, const struct orl_hull_points *hull,
                                       const struct orl_mesh *mesh, struct orl_points *points,
                                       size_t *added)
 {
-    struct orl_points surface = {0}, outside = {0}, joined = {0};
-    const struct orl_points *const clouds[3] = {points, &outside, &surface};
-    enum orl_result result = take(log, hull->outside, points, &outside);
-    ORL_THEN(result, surface_points(log, &hull->cube, mesh, &surface));
-    ORL_THEN(result, drop_near(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, &outside));
-    ORL_THEN(result, drop_near(log, points, APART * hull->cube.voxel, &surface));
-    ORL_THEN(result, join(log, clouds, &joined));
-    if (result == ORL_OK) {
-        *added = points->count + outside.count;
-        orl_points_finish(points);
-        *points = joined;
+    struct orl_points all; // what lies inside, outside and on the surface, one after the other
+    size_t inside = 0, to[2] = {0};
+    ORL_TRY(orl_points_init(log, &all, points->count + mesh->vertex_count));
+    for (size_t i = 0; i < points->count; i++)
+        inside += !hull->outside[i];
+    to[true] = inside;
+    for (size_t i = 0; i < points->count; i++)
+        orl_points_copy(points, i, &all, to[hull->outside[i]]++);
+    struct orl_points in = part_of(&all, 0, inside), out = part_of(&all, inside, points->count - inside);
+    struct orl_points surface = part_of(&all, points->count, mesh->vertex_count);
+    surface_points(&hull->cube, mesh, &surface);
+    enum orl_result result = drop_near(log, &surface, NEAR_HULL * hull->cube.side * hull->cube.voxel, &out);
+    ORL_THEN(result, drop_near(log, &in, APART * hull->cube.voxel, &surface));
+    if (result != ORL_OK) {
+        orl_points_finish(&all);
+        return result;
     }
-    orl_points_finish(&surface);
-    orl_points_finish(&outside);
-    return result;
+    *added = in.count + out.count;
+    for (size_t i = 0; i < surface.count; i++)
+        orl_points_copy(&surface, i, &all, *added + i);
+    all.count = *added + surface.count;
+    orl_points_finish(points);
+    *points = all;
+    return ORL_OK;
 }
 
 enum orl_result orl_hull_points_end(const struct orl_log *log, struct orl_hull_points *hull,
