@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/order.h"
@@ -13,25 +12,15 @@ enum { COLMAP_SOURCES = 20 };
 
 // --- COLMAP's lists, of training photographs only ---
 
-// Chooses the training photographs that share most sparse points with image `ref`, best first; how many.
+// Chooses the training photographs that share most sparse points, shared[i], with image `ref`, best first; how many.
 // `best` has room for all.
-static size_t best_sources(const struct orl_colmap_model *model, const bool *train, size_t ref, bool *seen,
+static size_t best_sources(const struct orl_colmap_model *model, const bool *train, size_t ref, const size_t *shared,
                            struct orl_ranked *best)
 {
     size_t count = 0;
-    const struct orl_colmap_image *image = &model->images[ref];
-    memset(seen, 0, model->point_count);
-    for (size_t p = 0; p < image->point_count; p++)
-        seen[image->points[p]] = true;
-    for (size_t i = 0; i < model->image_count; i++) {
-        size_t common = 0;
-        if (i == ref || !train[i])
-            continue;
-        for (size_t p = 0; p < model->images[i].point_count; p++)
-            common += seen[model->images[i].points[p]];
-        if (common)
-            best[count++] = (struct orl_ranked){-(double)common, i};
-    }
+    for (size_t i = 0; i < model->image_count; i++)
+        if (i != ref && train[i] && shared[i])
+            best[count++] = (struct orl_ranked){-(double)shared[i], i};
     qsort(best, count, sizeof *best, orl_order_ranked);
     return count < COLMAP_SOURCES ? count : COLMAP_SOURCES;
 }
@@ -41,17 +30,18 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
 {
     const struct orl_colmap_model *model;
     ORL_TRY(orl_job_sparse(job, &model));
-    bool *seen = orl_array(job->log, model->point_count, sizeof *seen);
+    size_t *shared = orl_array(job->log, model->image_count, sizeof *shared);
     bool *train = orl_array(job->log, model->image_count, sizeof *train);
     struct orl_ranked *best = orl_array(job->log, model->image_count, sizeof *best);
-    enum orl_result result = seen && train && best ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = shared && train && best ? ORL_OK : ORL_ERR_MEMORY;
     // Names are searched once for each photograph, not for each pair of them.
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++)
         train[i] = orl_names_contain(names, model->images[i].name);
     for (size_t i = 0; result == ORL_OK && i < model->image_count; i++) {
         if (!train[i])
             continue;
-        size_t count = best_sources(model, train, i, seen, best);
+        result = orl_colmap_count_shared(job->log, model, &model->images[i], shared);
+        size_t count = result == ORL_OK ? best_sources(model, train, i, shared, best) : 0;
         if (!count)
             continue; // COLMAP stops at a photograph without sources
         fprintf(out, "%s\n", model->images[i].name);
@@ -59,7 +49,7 @@ static enum orl_result write_sources(struct orl_job *job, FILE *out,
             fprintf(out, "%s%s", k ? ", " : "", model->images[best[k].index].name);
         fprintf(out, "\n");
     }
-    free(seen);
+    free(shared);
     free(train);
     free(best);
     return result;

@@ -1,7 +1,6 @@
 #include "preprocess/cloud/fuse_photographs.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "bridge/bridge.h"
 #include "core/file.h"
@@ -34,32 +33,18 @@ struct fusion {
 
 // --- what is compared with what ---
 
-// Counts the sparse points that a source shares with each other one, as negative keys. `seen`: a byte
-// for each sparse point.
-static void count_shared(const struct fusion *f, size_t own, uint8_t *seen,
-                         struct orl_ranked *overlaps)
-{
-    const struct orl_colmap_image *image = f->sources[own].image;
-    memset(seen, 0, f->model->point_count);
-    for (size_t k = 0; k < image->point_count; k++)
-        seen[image->points[k]] = 1;
-    for (size_t i = 0; i < f->count; i++) {
-        overlaps[i] = (struct orl_ranked){0, i};
-        const struct orl_colmap_image *other = f->sources[i].image;
-        for (size_t k = 0; i != own && k < other->point_count; k++)
-            overlaps[i].key -= seen[other->points[k]];
-    }
-}
-
 static enum orl_result find_others(struct fusion *f)
 {
     const struct orl_log *log = f->job->log;
-    uint8_t *seen = orl_array(log, f->model->point_count + 1, 1);
+    size_t *shared = orl_array(log, f->model->image_count, sizeof *shared);
     struct orl_ranked *overlaps = orl_array(log, f->count, sizeof *overlaps);
-    enum orl_result result = seen && overlaps ? ORL_OK : ORL_ERR_MEMORY;
+    enum orl_result result = shared && overlaps ? ORL_OK : ORL_ERR_MEMORY;
     for (size_t i = 0; result == ORL_OK && i < f->count; i++) {
         struct source *s = &f->sources[i];
-        count_shared(f, i, seen, overlaps);
+        if ((result = orl_colmap_count_shared(log, f->model, s->image, shared)) != ORL_OK)
+            break;
+        for (size_t k = 0; k < f->count; k++)
+            overlaps[k] = (struct orl_ranked){-(double)shared[f->sources[k].image - f->model->images], k};
         qsort(overlaps, f->count, sizeof *overlaps, orl_order_ranked);
         s->others = orl_array(log, ORL_FUSE_OTHERS, sizeof *s->others);
         if (!s->others)
@@ -69,7 +54,7 @@ static enum orl_result find_others(struct fusion *f)
             if (overlaps[k].index != i)
                 s->others[s->other_count++] = (uint32_t)overlaps[k].index;
     }
-    free(seen);
+    free(shared);
     free(overlaps);
     return result;
 }

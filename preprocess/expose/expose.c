@@ -355,22 +355,17 @@ static enum orl_result fit_all(struct exposing *e)
 // Counts sparse points in common. Held-out photographs have them because they were calibrated too.
 static enum orl_result count_shared(const struct exposing *e, uint32_t *shared, uint32_t *own)
 {
-    bool *seen = orl_array(e->job->log, e->model->point_count, sizeof *seen);
-    ORL_TRY_MEMORY(seen);
-    for (size_t i = 0; i < e->count; i++) {
-        const struct orl_colmap_image *image = e->photos[i].image;
-        memset(seen, 0, e->model->point_count * sizeof *seen);
-        for (size_t p = 0; p < image->point_count; p++)
-            seen[image->points[p]] = true;
-        own[i] = (uint32_t)image->point_count;
-        for (size_t k = 0; k < e->train; k++) {
-            const struct orl_colmap_image *other = e->photos[k].image;
-            for (size_t p = 0; p < other->point_count; p++)
-                shared[i * e->train + k] += seen[other->points[p]];
-        }
+    const struct orl_colmap_model *model = e->model;
+    size_t *counts = orl_array(e->job->log, model->image_count, sizeof *counts);
+    enum orl_result result = counts ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < e->count; i++) {
+        result = orl_colmap_count_shared(e->job->log, model, e->photos[i].image, counts);
+        own[i] = (uint32_t)e->photos[i].image->point_count;
+        for (size_t k = 0; k < e->train; k++)
+            shared[i * e->train + k] = (uint32_t)counts[e->photos[k].image - model->images];
     }
-    free(seen);
-    return ORL_OK;
+    free(counts);
+    return result;
 }
 
 // Photographs whose exposures the camera chose by itself are one series. Merged as a bracket is, they give no

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/memory.h"
 #include "scene/colmap_internal.h"
 
 // From COLMAP's src/colmap/sensor/models.h, in the order of its ids.
@@ -148,6 +149,22 @@ struct orl_colmap_camera orl_colmap_pinhole(uint32_t id, const struct orl_camera
 {
     return (struct orl_colmap_camera){.id = id, .model = 1, .pinhole = *c,
                                       .params = {c->fx, c->fy, c->cx, c->cy}, .param_count = 4};
+}
+
+enum orl_result orl_colmap_count_shared(const struct orl_log *log, const struct orl_colmap_model *model,
+                                        const struct orl_colmap_image *image, size_t *shared)
+{
+    bool *seen = orl_array(log, model->point_count, sizeof *seen);
+    ORL_TRY_MEMORY(seen);
+    for (size_t k = 0; k < image->point_count; k++)
+        seen[image->points[k]] = true;
+    for (size_t i = 0; i < model->image_count; i++) {
+        shared[i] = 0;
+        for (size_t k = 0; k < model->images[i].point_count; k++)
+            shared[i] += seen[model->images[i].points[k]];
+    }
+    free(seen);
+    return ORL_OK;
 }
 
 struct orl_view orl_colmap_image_view(const struct orl_colmap_model *model,

@@ -65,6 +65,9 @@ const struct orl_colmap_camera *orl_colmap_camera_by_id(const struct orl_colmap_
 // NULL when no image has that name.
 const struct orl_colmap_image *orl_colmap_image_by_name(const struct orl_colmap_model *model,
                                                         const char *name);
+// Sets shared[i], for each image i of the model, to how many of its points `image` sees too.
+enum orl_result orl_colmap_count_shared(const struct orl_log *log, const struct orl_colmap_model *model,
+                                        const struct orl_colmap_image *image, size_t *shared) ORL_CHECK_RESULT;
 // A camera without distortion.
 struct orl_colmap_camera orl_colmap_pinhole(uint32_t id, const struct orl_camera *camera);
 // Pose and pinhole camera of one of the model's images, without distortion.
