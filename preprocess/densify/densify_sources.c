@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/order.h"
+#include "core/vec3.h"
 #include "preprocess/densify/densify_internal.h"
 
 enum {
@@ -27,10 +28,6 @@ enum orl_result orl_densify_photos_init(const struct orl_log *log,
         if (names && !orl_names_contain(names, image->name))
             continue;
         const struct orl_colmap_camera *camera = orl_colmap_camera_by_id(model, image->camera_id);
-        if (!camera || !orl_camera_valid(&camera->pinhole)) {
-            orl_logf(log, ORL_LOG_WARNING, "%s: its camera cannot be used; left out", image->name);
-            continue;
-        }
         if (camera->model > 1)
             orl_logf(log, ORL_LOG_WARNING, "%s: not undistorted (camera model %d); depth will be "
                      "off towards the corners", image->name, camera->model);
@@ -101,13 +98,12 @@ static double smooth_step(double low, double high, double x)
 // Depth is ill-conditioned below one degree; beyond 40 degrees patches look different.
 static double angle_score(const double a[3], const double b[3], const double point[3])
 {
-    double dot = 0.0, aa = 0.0, bb = 0.0;
+    double to_a[3], to_b[3];
     for (int i = 0; i < 3; i++) {
-        dot += (a[i] - point[i]) * (b[i] - point[i]);
-        aa += (a[i] - point[i]) * (a[i] - point[i]);
-        bb += (b[i] - point[i]) * (b[i] - point[i]);
+        to_a[i] = a[i] - point[i];
+        to_b[i] = b[i] - point[i];
     }
-    double cosine = dot / sqrt(fmax(aa * bb, 1e-300));
+    double cosine = orl_dot3(to_a, to_b) / sqrt(fmax(orl_dot3(to_a, to_a) * orl_dot3(to_b, to_b), 1e-300));
     double degrees = acos(fmin(fmax(cosine, -1.0), 1.0)) * 57.29577951308232;
     return smooth_step(0.3, 4.0, degrees) * (1.0 - smooth_step(30.0, 65.0, degrees));
 }
