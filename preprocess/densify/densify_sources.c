@@ -35,13 +35,9 @@ enum orl_result orl_densify_photos_init(const struct orl_log *log,
         photos->views[photos->count++] =
             (struct orl_view){.camera = camera->pinhole, .cam_from_world = image->cam_from_world};
     }
-    for (size_t k = 0; names && k < names->count; k++) {
-        bool found = false;
-        for (size_t i = 0; i < photos->count && !found; i++)
-            found = strcmp(densify_photo_name(photos, i), names->items[k]) == 0;
-        if (!found)
+    for (size_t k = 0; names && k < names->count; k++)
+        if (!orl_colmap_image_by_name(model, names->items[k]))
             orl_logf(log, ORL_LOG_WARNING, "%s: not in the model; left out", names->items[k]);
-    }
     return photos->count ? ORL_OK
                          : orl_fail(log, ORL_ERR_DATA, "the sparse model has none of the photographs");
 }

@@ -10,6 +10,7 @@
 #include "core/order.h"
 #include "io/picture.h"
 #include "scene/depth_buffer.h"
+#include "scene/meter.h"
 
 enum {
     LEVELS_MAX = 8,       // of a photograph's pyramid
@@ -169,13 +170,6 @@ static bool faces(const struct orl_points *points, size_t i, const double eye[3]
     return dot >= COSINE_MIN * sqrt(length);
 }
 
-static double squared_radius(const struct orl_camera *c, const double pixel[2])
-{
-    double dx = pixel[0] - c->cx, dy = pixel[1] - c->cy;
-    double half_squared = 0.25 * ((double)c->width * c->width + (double)c->height * c->height);
-    return (dx * dx + dy * dy) / half_squared;
-}
-
 static enum orl_result take_point(struct taking *t, uint32_t photo, const struct orl_view *view,
                                   const double eye[3], const struct orl_depth_buffer *buffer,
                                   const struct pyramid *pyramid, size_t point)
@@ -191,7 +185,7 @@ static enum orl_result take_point(struct taking *t, uint32_t photo, const struct
     if (!take_patch(pyramid, pixel, radius, &item))
         return ORL_OK;
     ORL_TRY(ORL_GROW(t->log, t->items, t->capacity, t->count));
-    item.r2 = (float)squared_radius(&view->camera, pixel);
+    item.r2 = (float)orl_squared_radius(&view->camera, pixel[0], pixel[1]);
     t->items[t->count++] = item;
     return ORL_OK;
 }

@@ -14,13 +14,17 @@ float orl_light_aligned(float gain, float value)
     return gain * value / (1 + value * (gain - 1 - third + third * value * value));
 }
 
+double orl_squared_radius(const struct orl_camera *camera, double x, double y)
+{
+    double dx = x - camera->cx, dy = y - camera->cy;
+    double half2 = 0.25 * ((double)camera->width * camera->width + (double)camera->height * camera->height);
+    return (dx * dx + dy * dy) / half2;
+}
+
 float orl_illumination(const float vignette[3], const struct orl_camera *camera, double x,
                        double y)
 {
-    double dx = x - camera->cx, dy = y - camera->cy;
-    double half2 = 0.25 * ((double)camera->width * camera->width +
-                           (double)camera->height * camera->height);
-    double r2 = (dx * dx + dy * dy) / half2;
+    double r2 = orl_squared_radius(camera, x, y);
     double light = 1 + r2 * ((double)vignette[0] + r2 * ((double)vignette[1] + r2 * (double)vignette[2]));
     return fmaxf((float)light, 0.1f);
 }

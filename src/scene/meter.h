@@ -9,6 +9,8 @@
 // shaders/gather/sample/srgb.glsl, which says why. Increases with `value` in [0, 1].
 float orl_light_aligned(float gain, float value);
 
+// Squared distance of a place of a picture, pixels, from the principal point, in half diagonals.
+double orl_squared_radius(const struct orl_camera *camera, double x, double y);
 // Relative illumination at a place of a picture that `camera` took, pixels (orl_photo.vignette): a tenth at least,
 // since the polynomial may fall below 0 beside the samples that it was fitted to.
 float orl_illumination(const float vignette[3], const struct orl_camera *camera, double x,
