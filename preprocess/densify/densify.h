@@ -23,9 +23,9 @@ struct orl_densify_part {
 // Cost grows with the number of source photographs. There are two photometric red-black sweeps more
 // at the coarsest level, and half as many at each finer one; each geometric pass uses the depths of
 // the previous one. The patch is about half as large at the finest level, where coarser levels have
-// found the rough shape. When one photograph needs more device memory than the limit, orl_densify
-// uses fewer sources, down to four, then halves photographs and maps until they fit; it logs a
-// warning.
+// found the rough shape. When one photograph needs more device memory than the limit, or larger
+// textures than every device has, orl_densify uses fewer sources, down to four, then halves
+// photographs and maps until they fit; it logs a warning.
 #define ORL_DENSIFY_OPTIONS(ROW) \
     ROW(masks_dir, "masks", TEXT("DIR"), "DIR/NAME.png: no depth where it is 0") \
     ROW(sources, "sources", INT(8, 1, 16, "N"), "source photographs each") \
