@@ -52,44 +52,23 @@ static enum orl_result check_inside(const struct orl_log *log, const struct orl_
                           "there", path);
 }
 
-// The file may be missing.
-static enum orl_result check_if_there(const struct orl_log *log, const struct orl_scene *scene,
-                                      struct orl_file_path path, bool *there)
+// Files may be missing, but for the photographs.
+static enum orl_result check_files(const struct orl_log *log, struct orl_scene *scene)
 {
-    *there = orl_path_is_file(path.text);
-    return *there ? check_inside(log, scene, path.text) : ORL_OK;
-}
-
-static enum orl_result check_photo(const struct orl_log *log, struct orl_scene *scene, size_t i)
-{
-    struct orl_photo *photo = &scene->photos[i];
-    bool there, linear, masked;
-    ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_PHOTO), &there));
-    if (!there)
-        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
-                        scene->dir, photo->name);
-    ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_LINEAR), &linear));
-    photo->linear = linear && !shows_time_step(scene);
-    return check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_MASK), &masked);
-}
-
-static enum orl_result check_photo_files(const struct orl_log *log, struct orl_scene *scene)
-{
+    const struct orl_file_path mesh = orl_scene_mesh_path(scene);
     for (size_t i = 0; i < scene->photo_count; i++)
-        ORL_TRY(check_photo(log, scene, i));
-    bool mesh;
-    return check_if_there(log, scene, orl_scene_mesh_path(scene), &mesh);
-}
-
-// What all time steps have in common.
-static enum orl_result check_resting_files(const struct orl_log *log, const struct orl_scene *scene)
-{
-    for (size_t i = 0; i < scene->photo_count; i++) {
-        bool occluders, background;
-        ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_OCCLUDERS), &occluders));
-        ORL_TRY(check_if_there(log, scene, orl_scene_file(scene, i, ORL_FILE_BACKGROUND), &background));
-    }
-    return ORL_OK;
+        for (enum orl_photo_file kind = ORL_FILE_PHOTO; kind <= ORL_FILE_LINEAR; kind++) {
+            const struct orl_file_path path = orl_scene_file(scene, i, kind);
+            bool there = orl_path_is_file(path.text);
+            if (there)
+                ORL_TRY(check_inside(log, scene, path.text));
+            if (!there && kind == ORL_FILE_PHOTO)
+                return orl_fail(log, ORL_ERR_NOT_FOUND, "%s/images/%s: this photograph is missing",
+                                scene->dir, scene->photos[i].name);
+            if (kind == ORL_FILE_LINEAR)
+                scene->photos[i].linear = there && !shows_time_step(scene);
+        }
+    return orl_path_is_file(mesh.text) ? check_inside(log, scene, mesh.text) : ORL_OK;
 }
 
 enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene *scene, int frame)
@@ -99,10 +78,10 @@ enum orl_result orl_scene_set_frame(const struct orl_log *log, struct orl_scene 
         return orl_fail(log, ORL_ERR_ARGUMENT, "%s: no time step %d: there are %zu", scene->dir,
                         frame, scene->frame_count);
     scene->frame = frame;
-    enum orl_result result = check_photo_files(log, scene);
+    enum orl_result result = check_files(log, scene);
     if (result != ORL_OK) {
         scene->frame = before;
-        if (check_photo_files(NULL, scene) != ORL_OK) // restores photo->linear
+        if (check_files(NULL, scene) != ORL_OK) // restores photo->linear
             return result;
     }
     return result;
@@ -128,8 +107,7 @@ static enum orl_result set_photos(const struct orl_log *log, struct orl_scene *s
         scene->photo_count = i + 1; // counted first, so that a half-made one is released
         ORL_TRY(set_photo(log, scene->dir, model, &model->images[i], &scene->photos[i]));
     }
-    ORL_TRY(check_photo_files(log, scene));
-    return check_resting_files(log, scene);
+    return check_files(log, scene);
 }
 
 // Sorts the values. share: of them that are smaller, [0, 1); 0 without any.
@@ -297,33 +275,6 @@ enum orl_result orl_scene_read_model(const struct orl_log *log, const struct orl
     return orl_colmap_read(log, dir, model);
 }
 
-// Paths of the files that a folder has; NULL: missing.
-struct folder {
-    const char *manifest, *points, *fused, *lod;
-};
-
-static const char *if_there(const char *path)
-{
-    return orl_path_is_file(path) ? path : NULL;
-}
-
-static enum orl_result look(const struct orl_log *log, const char *dir, bool points,
-                            const struct folder *folder)
-{
-    if (!orl_path_is_dir(dir))
-        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", dir);
-    if (folder->manifest)
-        return !points || folder->points || folder->lod
-                   ? ORL_OK
-                              : orl_fail(log, ORL_ERR_NOT_FOUND, "%s: points.ply is missing", dir);
-    ORL_TRY(orl_manifest_check_unfinished(log, dir));
-    if (!folder->fused)
-        return orl_fail(log, ORL_ERR_NOT_FOUND,
-                        "%s: not a scene (no scene.json) nor a COLMAP dense workspace "
-                        "(no fused.ply)", dir);
-    return ORL_OK;
-}
-
 // Adds the points. The photographs and their `test` flags must be set before.
 static enum orl_result add_points(const struct orl_log *log, struct orl_scene *scene,
                                   const struct orl_colmap_model *model, const char *path,
@@ -337,24 +288,6 @@ static enum orl_result add_points(const struct orl_log *log, struct orl_scene *s
     return ORL_OK;
 }
 
-static enum orl_result fill(const struct orl_log *log, struct orl_scene *scene, bool points_too,
-                            struct orl_colmap_model *model, const struct folder *folder)
-{
-    bool lod = points_too && folder->manifest && folder->lod;
-    const char *points = lod ? folder->lod : folder->manifest ? folder->points : folder->fused;
-    if (points_too)
-        ORL_TRY(check_inside(log, scene, points));
-    if (folder->manifest)
-        ORL_TRY(check_inside(log, scene, folder->manifest));
-    ORL_TRY(orl_scene_read_model(log, scene, model));
-    ORL_TRY(set_photos(log, scene, model));
-    if (lod)
-        ORL_TRY(orl_lod_open(log, points, &scene->lod));
-    if (folder->manifest)
-        ORL_TRY(orl_manifest_read(log, folder->manifest, points_too && !lod, scene));
-    return points_too ? add_points(log, scene, model, points, folder->manifest != NULL) : ORL_OK;
-}
-
 static enum orl_result create(const struct orl_log *log, const char *dir, struct orl_scene **out)
 {
     *out = orl_array(log, 1, sizeof **out);
@@ -365,16 +298,43 @@ static enum orl_result create(const struct orl_log *log, const char *dir, struct
     return (*out)->dir ? ORL_OK : ORL_ERR_MEMORY;
 }
 
+// `prepared`: has the folder a manifest? `cloud`: the file of its points; `points`: are they read?
+static enum orl_result look(const struct orl_log *log, const char *dir, bool prepared, const char *cloud,
+                            bool points)
+{
+    if (!orl_path_is_dir(dir))
+        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no such folder", dir);
+    if (!prepared)
+        ORL_TRY(orl_manifest_check_unfinished(log, dir));
+    if (orl_path_is_file(cloud) || (prepared && !points))
+        return ORL_OK;
+    return prepared ? orl_fail(log, ORL_ERR_NOT_FOUND, "%s: points.ply is missing", dir)
+                    : orl_fail(log, ORL_ERR_NOT_FOUND,
+                               "%s: not a scene (no scene.json) nor a COLMAP dense workspace "
+                               "(no fused.ply)", dir);
+}
+
 static enum orl_result open_scene(const struct orl_log *log, const char *dir, bool points,
                                   struct orl_scene **out)
 {
-    const struct folder folder = {
-        if_there(ORL_PATH(dir, "scene.json")), if_there(ORL_PATH(dir, "points.ply")),
-        if_there(ORL_PATH(dir, "fused.ply")), if_there(ORL_PATH(dir, ORL_LOD_NAME))};
+    const char *manifest = ORL_PATH(dir, "scene.json"), *levels = ORL_PATH(dir, ORL_LOD_NAME);
+    bool prepared = orl_path_is_file(manifest), paged = prepared && points && orl_path_is_file(levels);
+    const char *cloud = paged ? levels : ORL_PATH(dir, "%s", prepared ? "points.ply" : "fused.ply");
     struct orl_colmap_model model = {0};
     enum orl_result result = create(log, dir, out);
-    ORL_THEN(result, look(log, dir, points, &folder));
-    ORL_THEN(result, fill(log, *out, points, &model, &folder));
+    ORL_THEN(result, look(log, dir, prepared, cloud, points));
+    if (points)
+        ORL_THEN(result, check_inside(log, *out, cloud));
+    if (prepared)
+        ORL_THEN(result, check_inside(log, *out, manifest));
+    ORL_THEN(result, orl_scene_read_model(log, *out, &model));
+    ORL_THEN(result, set_photos(log, *out, &model));
+    if (paged)
+        ORL_THEN(result, orl_lod_open(log, cloud, &(*out)->lod));
+    if (prepared)
+        ORL_THEN(result, orl_manifest_read(log, manifest, points && !paged, *out));
+    if (points)
+        ORL_THEN(result, add_points(log, *out, &model, cloud, prepared));
     orl_colmap_finish(&model);
     if (result != ORL_OK)
         orl_scene_destroy(out);
