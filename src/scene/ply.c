@@ -252,26 +252,13 @@ enum orl_result orl_ply_record(struct orl_ply *ply, const struct orl_ply_element
 
 // --- finding an element ---
 
-static enum orl_result skip_lines(struct orl_ply *ply, uint64_t count)
-{
-    for (uint64_t i = 0; i < count; i++) {
-        const uint8_t *end = memchr(ply->data + ply->at, '\n', ply->size - ply->at);
-        if (!end)
-            return orl_ply_bad(ply, "the file ends ahead of an element");
-        ply->at = (size_t)(end - ply->data) + 1;
-    }
-    return ORL_OK;
-}
-
 static enum orl_result skip(struct orl_ply *ply, const struct orl_ply_element *element)
 {
     double values[ORL_PLY_PROPERTIES_MAX];
     size_t left = ply->size - ply->at, unit = ply->ascii ? 1 : element->least;
     if (unit && element->count > left / unit)
         return orl_ply_bad(ply, "an element is larger than the file");
-    if (ply->ascii)
-        return skip_lines(ply, element->count);
-    if (!element->lists) {
+    if (!ply->ascii && !element->lists) {
         ply->at += unit * (size_t)element->count;
         return ORL_OK;
     }
@@ -280,22 +267,10 @@ static enum orl_result skip(struct orl_ply *ply, const struct orl_ply_element *e
     return ORL_OK;
 }
 
-// Skips the rest of the line after the last value of an ascii record.
-static void finish_line(struct orl_ply *ply)
-{
-    while (ply->ascii && ply->at < ply->size &&
-           (ply->data[ply->at] == ' ' || ply->data[ply->at] == '\r'))
-        ply->at++;
-    if (ply->ascii && ply->at < ply->size && ply->data[ply->at] == '\n')
-        ply->at++;
-}
-
 enum orl_result orl_ply_seek(struct orl_ply *ply, const char *name, const char *missing,
                              const struct orl_ply_element **found)
 {
     *found = NULL;
-    if (ply->next > 0)
-        finish_line(ply);
     int i = ply->next;
     while (i < ply->element_count && strcmp(ply->elements[i].name, name) != 0)
         i++;
