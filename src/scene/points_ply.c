@@ -21,6 +21,17 @@ static const char *const roles[ROLE_COUNT] = {"x", "y", "z", "nx", "ny", "nz",
                                               "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
                                               "scale_0", "scale_1", "scale_2"};
 
+struct orl_point_stream {
+    struct orl_ply ply; // its data: the whole file, or the records of one part
+    FILE *file;         // that parts are read from; NULL: the whole file has been read
+    const struct orl_ply_element *vertex;
+    size_t records_at;  // offset of the first record
+    size_t capacity;    // of ply.data, in bytes
+    uint64_t next;      // record
+    int property[ROLE_COUNT];
+    double color_scale; // brings colours to 255 at white
+};
+
 // Sets the index of the property of each role; -1: none.
 static void find_roles(const struct orl_ply_element *vertex, int property[ROLE_COUNT])
 {
@@ -82,84 +93,95 @@ static bool set_point(struct orl_points *points, size_t i, const double values[R
     return true;
 }
 
-// Programs that convert from LAS store 16 bits, or 8 bits in properties of 16, and others floats of either
-// range, so the file's greatest value decides what white is, unless there is no doubt.
-static bool is_white_known(const struct orl_ply_element *vertex, const int property[ROLE_COUNT])
+// Finds the next `most` records, or as many as are left, and reads them from the file. *part: the vertices, with their
+// number as the count.
+static enum orl_result take_part(struct orl_point_stream *s, size_t most, struct orl_ply_element *part)
 {
-    return property[RED] < 0 || vertex->properties[property[RED]].type == ORL_PLY_UINT8;
-}
-
-// Raises *greatest to the greatest colour of the next records.
-static enum orl_result find_greatest(struct orl_ply *ply, const struct orl_ply_element *vertex,
-                                     const int property[ROLE_COUNT], double *greatest)
-{
-    double record[ORL_PLY_PROPERTIES_MAX];
-    for (uint64_t i = 0; i < vertex->count; i++) {
-        ORL_TRY(orl_ply_record(ply, vertex, record, -1, NULL));
-        for (int role = RED; role <= BLUE; role++)
-            if (property[role] >= 0 && isfinite(record[property[role]]))
-                *greatest = fmax(*greatest, record[property[role]]);
+    *part = *s->vertex;
+    uint64_t left = s->next < part->count ? part->count - s->next : 0;
+    part->count = left < most ? left : most;
+    size_t bytes = s->file ? (size_t)part->count * part->least : 0;
+    if (s->file) {
+        ORL_TRY(orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1));
+        s->ply.size = fread(s->ply.data, 1, bytes, s->file);
+        s->ply.at = 0;
+        if (s->ply.size != bytes)
+            return orl_fail(s->ply.log, ORL_ERR_IO, "%s: cannot read record %llu", s->ply.path,
+                            (unsigned long long)s->next);
     }
+    s->next += part->count;
     return ORL_OK;
 }
 
-// The factor that brings colours to 255 at white.
-static double scale_of(const struct orl_ply_element *vertex, const int property[ROLE_COUNT], double greatest)
+enum orl_result orl_point_stream_seek(struct orl_point_stream *s, uint64_t record)
 {
-    // Floats may exceed white.
-    bool unit = orl_ply_is_float(vertex, property[RED]) && greatest < 16;
-    return unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
+    size_t at = s->records_at + (size_t)record * s->vertex->least;
+    s->next = record;
+    if (!s->file)
+        s->ply.at = at;
+    return !s->file || fseeko(s->file, (off_t)at, SEEK_SET) == 0 ? ORL_OK : orl_file_failed(s->ply.log, s->ply.path);
 }
 
-// Leaves the reader where it was.
-static enum orl_result find_color_scale(struct orl_ply *ply, const struct orl_ply_element *vertex,
-                                        const int property[ROLE_COUNT], double *scale)
+// Finds the factor that brings colours to 255 at white. Programs that convert from LAS store 16 bits, or 8 bits in
+// properties of 16, and others floats of either range, so the file's greatest value decides what white is, unless there
+// is no doubt: that takes a pass over all records.
+static enum orl_result find_color_scale(struct orl_point_stream *s)
 {
-    double greatest = 0;
-    const size_t start = ply->at;
-    *scale = 1;
-    if (is_white_known(vertex, property))
+    enum { AT_ONCE = 1 << 16 };
+    struct orl_ply_element part;
+    double greatest = 0, record[ORL_PLY_PROPERTIES_MAX];
+    s->color_scale = 1;
+    if (s->property[RED] < 0 || s->vertex->properties[s->property[RED]].type == ORL_PLY_UINT8)
         return ORL_OK;
-    ORL_TRY(find_greatest(ply, vertex, property, &greatest));
-    ply->at = start;
-    *scale = scale_of(vertex, property, greatest);
-    return ORL_OK;
+    do {
+        ORL_TRY(take_part(s, AT_ONCE, &part));
+        for (uint64_t i = 0; i < part.count; i++) {
+            ORL_TRY(orl_ply_record(&s->ply, &part, record, -1, NULL));
+            for (int role = RED; role <= BLUE; role++)
+                if (s->property[role] >= 0 && isfinite(record[s->property[role]]))
+                    greatest = fmax(greatest, record[s->property[role]]);
+        }
+    } while (part.count);
+    // Floats may exceed white.
+    bool unit = orl_ply_is_float(s->vertex, s->property[RED]) && greatest < 16;
+    s->color_scale = unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
+    return orl_point_stream_seek(s, 0);
 }
 
-// color_scale: see scale_of.
-static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_element *vertex,
-                                   const int property[ROLE_COUNT], const double origin[3],
-                                   double color_scale, struct orl_points *points)
+// Reads the next `most` records, or as many as are left; *read: how many.
+static enum orl_result read_points(struct orl_point_stream *s, size_t most, const double origin[3],
+                                   struct orl_points *points, size_t *read)
 {
     size_t kept = 0, bad_radii = 0, transparent = 0;
+    const int *property = s->property;
+    const struct orl_ply *ply = &s->ply;
+    struct orl_ply_element part;
     bool gaussian = is_gaussian(property);
     double record[ORL_PLY_PROPERTIES_MAX];
     // Points without colours are mid-grey, and discs are thin: their third scale is a logarithm.
     double values[ROLE_COUNT] = {[RED] = 128, [GREEN] = 128, [BLUE] = 128, [SCALE_Z] = -1000};
-    enum orl_result result = ORL_OK;
-    for (uint64_t i = 0; i < vertex->count && result == ORL_OK; i++) {
-        result = orl_ply_record(ply, vertex, record, -1, NULL);
-        for (int role = 0; result == ORL_OK && role < ROLE_COUNT; role++) {
-            if (property[role] < 0)
-                continue;
+    ORL_TRY(take_part(s, most, &part));
+    *read = (size_t)part.count;
+    for (size_t i = 0; i < *read; i++) {
+        ORL_TRY(orl_ply_record(&s->ply, &part, record, -1, NULL));
+        for (int role = 0; role < ROLE_COUNT; role++) {
             bool color = role >= RED && role <= BLUE;
-            values[role] = record[property[role]] * (color ? color_scale : 1);
+            if (property[role] >= 0)
+                values[role] = record[property[role]] * (color ? s->color_scale : 1);
         }
-        if (result == ORL_OK && gaussian && !take_gaussian(values, property[RADIUS] >= 0))
+        if (gaussian && !take_gaussian(values, property[RADIUS] >= 0))
             transparent++;
-        else if (result == ORL_OK && set_point(points, kept, values, origin, &bad_radii))
-            kept++;
+        else
+            kept += set_point(points, kept, values, origin, &bad_radii);
     }
-    ORL_TRY(result);
     if (kept && !gaussian && property[RED] < 0)
         orl_logf(ply->log, ORL_LOG_INFO, "%s: no colours (red, green, blue): its points are grey", ply->path);
     if (transparent)
         orl_logf(ply->log, ORL_LOG_INFO, "%s: %zu of %zu Gaussians are transparent: dropped",
-                 ply->path, transparent, (size_t)vertex->count);
-    if (kept + transparent < vertex->count)
+                 ply->path, transparent, *read);
+    if (kept + transparent < *read)
         orl_logf(ply->log, ORL_LOG_WARNING, "%s: %zu of %zu points are not finite or absurdly far: "
-                 "dropped", ply->path, (size_t)vertex->count - transparent - kept,
-                 (size_t)vertex->count);
+                 "dropped", ply->path, *read - transparent - kept, *read);
     if (bad_radii)
         orl_logf(ply->log, ORL_LOG_WARNING,
                  "%s: %zu radii are negative or not finite: taken as unknown", ply->path,
@@ -168,16 +190,16 @@ static enum orl_result read_points(struct orl_ply *ply, const struct orl_ply_ele
     return ORL_OK;
 }
 
-// Finds the property of each role.
-static enum orl_result find_vertices(struct orl_ply *ply, const struct orl_ply_element *vertex,
-                                     int property[ROLE_COUNT])
+// Begins with the vertices, at whose first record the reader is: finds the property of each role.
+static enum orl_result begin(struct orl_point_stream *s)
 {
-    find_roles(vertex, property);
+    s->records_at = s->ply.at;
+    find_roles(s->vertex, s->property);
     for (int role = 0; role < ROLE_COUNT; role++)
-        if (property[role] >= 0 && vertex->properties[property[role]].list)
-            return orl_ply_bad(ply, "lists are not supported where a point needs a number");
-    if (property[X] < 0 || property[Y] < 0 || property[Z] < 0)
-        return orl_ply_bad(ply, "the vertices lack x, y or z");
+        if (s->property[role] >= 0 && s->vertex->properties[s->property[role]].list)
+            return orl_ply_bad(&s->ply, "lists are not supported where a point needs a number");
+    if (s->property[X] < 0 || s->property[Y] < 0 || s->property[Z] < 0)
+        return orl_ply_bad(&s->ply, "the vertices lack x, y or z");
     return ORL_OK;
 }
 
@@ -188,81 +210,34 @@ enum orl_result orl_points_read(const struct orl_log *log, const char *path, con
 {
     origin = origin ? origin : nowhere;
     memset(points, 0, sizeof *points);
-    struct orl_ply ply;
-    const struct orl_ply_element *vertex = NULL;
-    int property[ROLE_COUNT];
-    ORL_TRY(orl_ply_open(log, path, &ply));
-    enum orl_result result = orl_ply_seek(&ply, "vertex", "no vertices", &vertex);
-    ORL_THEN(result, find_vertices(&ply, vertex, property));
+    struct orl_point_stream s = {0};
+    size_t read;
+    ORL_TRY(orl_ply_open(log, path, &s.ply));
+    enum orl_result result = orl_ply_seek(&s.ply, "vertex", "no vertices", &s.vertex);
+    ORL_THEN(result, begin(&s));
     if (result == ORL_OK && memcmp(origin, nowhere, sizeof nowhere) != 0 &&
-        vertex->properties[property[X]].type == ORL_PLY_FLOAT32)
+        s.vertex->properties[s.property[X]].type == ORL_PLY_FLOAT32)
         orl_logf(log, ORL_LOG_WARNING, "%s: its coordinates are 32-bit floats, which are too coarse so far "
                  "from 0: write doubles", path);
-    ORL_THEN(result, orl_points_init(log, points, (size_t)vertex->count));
-    double color_scale;
-    ORL_THEN(result, find_color_scale(&ply, vertex, property, &color_scale));
-    ORL_THEN(result, read_points(&ply, vertex, property, origin, color_scale, points));
+    ORL_THEN(result, orl_points_init(log, points, (size_t)s.vertex->count));
+    ORL_THEN(result, find_color_scale(&s));
+    ORL_THEN(result, read_points(&s, SIZE_MAX, origin, points, &read));
     if (result != ORL_OK)
         orl_points_finish(points);
-    orl_ply_close(&ply);
+    orl_ply_close(&s.ply);
     return result;
 }
 
 // --- a part at a time ---
 
-struct orl_point_stream {
-    struct orl_ply ply; // its data: the records of one part
-    FILE *file;
-    size_t records_at;  // offset of the first record
-    size_t capacity;    // of ply.data, in bytes
-    uint64_t next;      // record
-    int property[ROLE_COUNT];
-    double color_scale; // see scale_of
-};
-
 // The file must hold all the records that its header claims.
 static enum orl_result check_length(struct orl_point_stream *s)
 {
-    const struct orl_ply_element *vertex = &s->ply.elements[0];
     off_t end = fseeko(s->file, 0, SEEK_END) == 0 ? ftello(s->file) : -1;
     if (end < 0)
         return orl_file_failed(s->ply.log, s->ply.path);
-    if (vertex->count > ((uint64_t)end - s->records_at) / vertex->least)
+    if (s->vertex->count > ((uint64_t)end - s->records_at) / s->vertex->least)
         return orl_ply_bad(&s->ply, "the file ends ahead of the last vertex");
-    return orl_point_stream_seek(s, 0);
-}
-
-// Loads the next `most` records, or as many as are left. *part: the vertices, with their number as the count.
-static enum orl_result load_part(struct orl_point_stream *s, size_t most, struct orl_ply_element *part)
-{
-    *part = s->ply.elements[0];
-    uint64_t left = s->next < part->count ? part->count - s->next : 0;
-    part->count = left < most ? left : most;
-    size_t bytes = (size_t)part->count * part->least;
-    ORL_TRY(orl_grow(s->ply.log, (void **)&s->ply.data, &s->capacity, bytes, 1));
-    if (fread(s->ply.data, 1, bytes, s->file) != bytes)
-        return orl_fail(s->ply.log, ORL_ERR_IO, "%s: cannot read record %llu", s->ply.path,
-                        (unsigned long long)s->next);
-    s->ply.size = bytes;
-    s->ply.at = 0;
-    s->next += part->count;
-    return ORL_OK;
-}
-
-// Takes a pass over the whole file where the type of the colours leaves open what white is.
-static enum orl_result find_stream_scale(struct orl_point_stream *s)
-{
-    enum { AT_ONCE = 1 << 16 };
-    struct orl_ply_element part = s->ply.elements[0];
-    double greatest = 0;
-    s->color_scale = 1;
-    if (is_white_known(&part, s->property))
-        return ORL_OK;
-    do {
-        ORL_TRY(load_part(s, AT_ONCE, &part));
-        ORL_TRY(find_greatest(&s->ply, &part, s->property, &greatest));
-    } while (part.count);
-    s->color_scale = scale_of(&part, s->property, greatest);
     return orl_point_stream_seek(s, 0);
 }
 
@@ -276,13 +251,11 @@ enum orl_result orl_point_stream_open(const struct orl_log *log, const char *pat
                              strcmp(s->ply.elements[0].name, "vertex") != 0))
         result = orl_fail(log, ORL_ERR_UNSUPPORTED, "%s: only a binary PLY whose vertices come "
                           "first and have no lists can be read a part at a time", path);
-    ORL_THEN(result, find_vertices(&s->ply, &s->ply.elements[0], s->property));
-    if (result == ORL_OK) {
-        s->records_at = s->ply.at;
-        *total = s->ply.elements[0].count;
-        result = check_length(s);
-    }
-    ORL_THEN(result, find_stream_scale(s));
+    s->vertex = &s->ply.elements[0];
+    *total = s->vertex->count;
+    ORL_THEN(result, begin(s));
+    ORL_THEN(result, check_length(s));
+    ORL_THEN(result, find_color_scale(s));
     if (result != ORL_OK)
         orl_point_stream_close(out);
     return result;
@@ -299,19 +272,8 @@ void orl_point_stream_close(struct orl_point_stream **stream)
     *stream = NULL;
 }
 
-enum orl_result orl_point_stream_seek(struct orl_point_stream *s, uint64_t record)
-{
-    off_t at = (off_t)(s->records_at + record * s->ply.elements[0].least);
-    s->next = record;
-    return fseeko(s->file, at, SEEK_SET) == 0 ? ORL_OK : orl_file_failed(s->ply.log, s->ply.path);
-}
-
 enum orl_result orl_point_stream_next(struct orl_point_stream *s, size_t most,
                                       struct orl_points *points, size_t *read)
 {
-    struct orl_ply_element part;
-    *read = 0;
-    ORL_TRY(load_part(s, most, &part));
-    *read = (size_t)part.count;
-    return read_points(&s->ply, &part, s->property, nowhere, s->color_scale, points);
+    return read_points(s, most, nowhere, points, read);
 }
