@@ -287,12 +287,11 @@ enum orl_result orl_lod_write(const struct orl_log *log, const struct orl_progre
 {
     struct writer w = {.log = log, .progress = progress, .params = params, .path = path};
     enum orl_result result = begin(&w);
-    if (result == ORL_OK && (result = check_disk(&w, ply)) == ORL_OK &&
-        (result = orl_point_parts_make(log, progress, ply, path, params->max_bytes,
-                                       &w.parts)) == ORL_OK &&
-        (result = find_radii(&w)) == ORL_OK &&
-        (result = for_parts(&w, "blocks", add_blocks)) == ORL_OK)
-        result = finish_levels(&w);
+    ORL_THEN(result, check_disk(&w, ply));
+    ORL_THEN(result, orl_point_parts_make(log, progress, ply, path, params->max_bytes, &w.parts));
+    ORL_THEN(result, find_radii(&w));
+    ORL_THEN(result, for_parts(&w, "blocks", add_blocks));
+    ORL_THEN(result, finish_levels(&w));
     ORL_THEN(result, orl_atomic_commit(log, &w.out));
     finish(&w);
     return result;

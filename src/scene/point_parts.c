@@ -9,8 +9,7 @@
 
 enum {
     AXIS_BITS = 6,            // of a cell's place along each axis
-    AXIS = 1 << AXIS_BITS,
-    CELLS = AXIS * AXIS * AXIS, // that are counted, in the order of the Morton curve
+    MOST_AXIS_BITS = 8,       // where a cell would be more than a part may have
     READ_POINTS = 1 << 16,    // read at once
     SAMPLE_READS = 64,        // to find the extent of the cloud
     SAMPLE_POINTS = 4096,     // each
@@ -46,6 +45,9 @@ struct maker {
     uint64_t records;       // of the PLY
     size_t max_bytes;
     struct orl_points read; // READ_POINTS
+    // The cube is divided into 1 << axis_bits cells along each axis, in the order of the Morton curve.
+    unsigned axis_bits;
+    uint64_t most;          // points of a part
     uint64_t *counts;       // of points in each cell
     uint32_t *part_of;      // each cell
     bool *border;           // of each cell: another part's points may be near
@@ -78,24 +80,29 @@ static enum orl_result find_cube(struct maker *m)
 
 // --- cells ---
 
-static uint32_t cell_at(const struct point_cube *cube, const float position[3])
+static size_t cell_count(const struct maker *m)
 {
-    return (uint32_t)(orl_point_cube_morton(cube, position) >> (63 - 3 * AXIS_BITS));
+    return (size_t)1 << 3 * m->axis_bits;
+}
+
+static uint32_t cell_at(const struct maker *m, const struct point_cube *cube, const float position[3])
+{
+    return (uint32_t)(orl_point_cube_morton(cube, position) >> (63 - 3 * m->axis_bits));
 }
 
 // Every third bit of a Morton code.
 static uint32_t gather_bits(uint32_t code)
 {
     uint32_t value = 0;
-    for (int k = 0; k < AXIS_BITS; k++)
+    for (int k = 0; k < MOST_AXIS_BITS; k++)
         value |= (code >> 3 * k & 1) << k;
     return value;
 }
 
 // The cells around one, and itself; cells outside the cube are left out. How many.
-static size_t find_near(uint32_t cell, uint32_t near[NEAR])
+static size_t find_near(const struct maker *m, uint32_t cell, uint32_t near[NEAR])
 {
-    static const struct point_cube units = {.side = AXIS}; // in which cells are 1 wide
+    const struct point_cube units = {.side = 1 << m->axis_bits}; // in which cells are 1 wide
     size_t count = 0;
     for (int i = 0; i < NEAR; i++) {
         const int step[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
@@ -103,10 +110,10 @@ static size_t find_near(uint32_t cell, uint32_t near[NEAR])
         bool inside = true;
         for (int k = 0; k < 3; k++) {
             to[k] = (float)((int)gather_bits(cell >> k) + step[k]);
-            inside = inside && to[k] >= 0 && to[k] < AXIS;
+            inside = inside && to[k] >= 0 && (double)to[k] < units.side;
         }
         if (inside)
-            near[count++] = cell_at(&units, to);
+            near[count++] = cell_at(m, &units, to);
     }
     return count;
 }
@@ -116,7 +123,7 @@ static size_t find_near(uint32_t cell, uint32_t near[NEAR])
 static bool reaches(const struct maker *m, const float position[3], uint32_t cell)
 {
     static const double times = 8;
-    double side = m->parts->cube.side / AXIS, distance2 = 0;
+    double side = ldexp(m->parts->cube.side, -(int)m->axis_bits), distance2 = 0;
     for (int k = 0; k < 3; k++) {
         double low = m->parts->cube.low[k] + side * (double)gather_bits(cell >> k);
         double first = m->parts->cube.low[k], last = first + m->parts->cube.side;
@@ -133,7 +140,7 @@ static size_t find_others(const struct maker *m, const float position[3], uint32
                           uint32_t others[NEAR])
 {
     uint32_t near[NEAR];
-    size_t count = 0, near_count = find_near(cell, near);
+    size_t count = 0, near_count = find_near(m, cell, near);
     for (size_t i = 0; i < near_count; i++) {
         uint32_t part = m->part_of[near[i]];
         bool known = part == m->part_of[cell] || !m->counts[near[i]];
@@ -166,7 +173,7 @@ static enum orl_result for_all(struct maker *m, const char *step,
 static enum orl_result count_cells(struct maker *m)
 {
     for (size_t i = 0; i < m->read.count; i++) {
-        m->counts[cell_at(&m->parts->cube, m->read.position[i])]++;
+        m->counts[cell_at(m, &m->parts->cube, m->read.position[i])]++;
         m->parts->flat = m->parts->flat && !(m->read.radius[i] > 0);
     }
     m->parts->total += m->read.count;
@@ -181,16 +188,53 @@ uint64_t orl_point_parts_max(size_t max_bytes)
     return most < LEAST_PART ? LEAST_PART : most;
 }
 
+// Counts the points of each cell, and in *largest those of the fullest one.
+static enum orl_result count_points(struct maker *m, uint64_t *largest)
+{
+    const struct orl_log *log = m->parts->log;
+    free(m->counts);
+    m->counts = orl_array(log, cell_count(m), sizeof *m->counts);
+    ORL_TRY_MEMORY(m->counts);
+    m->parts->total = *largest = 0;
+    ORL_TRY(for_all(m, "count", count_cells));
+    for (size_t cell = 0; cell < cell_count(m); cell++)
+        *largest = m->counts[cell] > *largest ? m->counts[cell] : *largest;
+    uint64_t limit = m->parts->flat ? MOST_FLAT_PART : MOST_PART;
+    m->most = orl_point_parts_max(m->max_bytes);
+    m->most = m->most < limit ? m->most : limit;
+    return ORL_OK;
+}
+
+// Halves the cells as long as one has more points than a part may have, and as that helps: points at one place
+// stay in one cell.
+static enum orl_result choose_cells(struct maker *m)
+{
+    const struct point_parts *parts = m->parts;
+    uint64_t largest = UINT64_MAX, before;
+    m->axis_bits = AXIS_BITS - 1;
+    do {
+        before = largest;
+        m->axis_bits++;
+        ORL_TRY(count_points(m, &largest));
+    } while (largest > m->most && largest <= before / 2 && m->axis_bits < MOST_AXIS_BITS);
+    if (largest > m->most)
+        orl_logf(parts->log, ORL_LOG_WARNING, "%s: %llu points lie so close together that they are sorted at once, which "
+                 "takes about %llu MiB of memory", parts->path, (unsigned long long)largest,
+                 (unsigned long long)(largest * POINT_BYTES >> 20));
+    m->part_of = orl_array(parts->log, cell_count(m), sizeof *m->part_of);
+    m->border = orl_array(parts->log, cell_count(m), sizeof *m->border);
+    return m->part_of && m->border ? ORL_OK : ORL_ERR_MEMORY;
+}
+
 static enum orl_result assign_cells(struct maker *m)
 {
     struct point_parts *parts = m->parts;
-    uint64_t most = orl_point_parts_max(m->max_bytes);
-    uint64_t limit = parts->flat ? MOST_FLAT_PART : MOST_PART;
-    most = most < limit ? most : limit;
     size_t capacity = 0;
-    for (size_t cell = 0; cell < CELLS; cell++) {
+    for (size_t cell = 0; cell < cell_count(m); cell++) {
         struct point_part *last = parts->count ? &parts->parts[parts->count - 1] : NULL;
-        if (!last || last->own.count + m->counts[cell] > most) {
+        if (!m->counts[cell])
+            continue;
+        if (!last || last->own.count + m->counts[cell] > m->most) {
             ORL_TRY(ORL_GROW(parts->log, parts->parts, capacity, parts->count));
             last = &parts->parts[parts->count++];
             *last = (struct point_part){0};
@@ -216,7 +260,7 @@ static enum orl_result lay_out(struct maker *m)
 {
     struct point_parts *parts = m->parts;
     uint64_t first = 0;
-    for (uint32_t cell = 0; parts->flat && cell < CELLS; cell++)
+    for (uint32_t cell = 0; parts->flat && cell < cell_count(m); cell++)
         if (m->counts[cell])
             count_around(m, cell);
     for (size_t i = 0; i < 2 * parts->count; i++) {
@@ -267,7 +311,7 @@ static enum orl_result distribute(struct maker *m)
     uint32_t others[NEAR];
     for (size_t i = 0; i < m->read.count; i++) {
         const float *position = m->read.position[i];
-        uint32_t cell = cell_at(&parts->cube, position);
+        uint32_t cell = cell_at(m, &parts->cube, position);
         size_t count = m->border[cell] ? find_others(m, position, cell, others) : 0;
         ORL_TRY(add_record(parts, &parts->parts[m->part_of[cell]].own, &m->read, i, 0));
         for (size_t k = 0; k < count; k++)
@@ -299,18 +343,15 @@ enum orl_result orl_point_parts_make(const struct orl_log *log, const struct orl
 {
     struct maker m = {.progress = progress, .parts = parts, .max_bytes = max_bytes};
     *parts = (struct point_parts){.log = log, .path = path, .flat = true};
-    m.counts = orl_array(log, CELLS, sizeof *m.counts);
-    m.part_of = orl_array(log, CELLS, sizeof *m.part_of);
-    m.border = orl_array(log, CELLS, sizeof *m.border);
-    enum orl_result result = m.counts && m.part_of && m.border ? ORL_OK : ORL_ERR_MEMORY;
-    ORL_THEN(result, orl_point_stream_open(log, ply, &m.stream, &m.records));
+    enum orl_result result = orl_point_stream_open(log, ply, &m.stream, &m.records);
     ORL_THEN(result, orl_points_init(log, &m.read, READ_POINTS));
-    if (result == ORL_OK && (result = orl_atomic_open(log, path, &parts->file)) == ORL_OK &&
-        (result = find_cube(&m)) == ORL_OK &&
-        (result = for_all(&m, "count", count_cells)) == ORL_OK &&
-        (result = assign_cells(&m)) == ORL_OK && (result = lay_out(&m)) == ORL_OK &&
-        (result = for_all(&m, "sort", distribute)) == ORL_OK)
-        result = flush(parts);
+    ORL_THEN(result, orl_atomic_open(log, path, &parts->file));
+    ORL_THEN(result, find_cube(&m));
+    ORL_THEN(result, choose_cells(&m));
+    ORL_THEN(result, assign_cells(&m));
+    ORL_THEN(result, lay_out(&m));
+    ORL_THEN(result, for_all(&m, "sort", distribute));
+    ORL_THEN(result, flush(parts));
     free(m.counts);
     free(m.part_of);
     free(m.border);

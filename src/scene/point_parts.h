@@ -20,8 +20,8 @@ struct point_parts {
     struct orl_atomic_file file; // beside `path`, with the parts; never takes its final name
 };
 
-// Reads the binary PLY twice and writes the parts, each of as many points as fit in `max_bytes`.
-// Where no point has a radius, a part comes with the points around it, among which its own have their
+// Reads the binary PLY twice, or up to four times where its points lie unevenly, and writes the parts, each of as many
+// points as fit in `max_bytes`; more, with a warning, where so many lie at one place. Where no point has a radius, a part comes with the points around it, among which its own have their
 // neighbours.
 enum orl_result orl_point_parts_make(const struct orl_log *log, const struct orl_progress *progress,
                                      const char *ply, const char *path, size_t max_bytes,

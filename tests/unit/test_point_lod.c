@@ -5,6 +5,7 @@
 #include <xxhash.h>
 
 #include "scene/point_lod_internal.h"
+#include "scene/point_parts.h"
 #include "test.h"
 
 static char *dir, *ply, *file;
@@ -304,6 +305,48 @@ static void damage_is_told(void **state)
     assert_int_equal(open_changed_file(4096 + 28, &crowd, 4, 0, true), ORL_ERR_FORMAT); // points
 }
 
+// Writes a wall of points of which most lie in a square of this size, and sorts it into parts of the least memory.
+static void crowd(float square, struct said *said, struct point_parts *parts)
+{
+    struct orl_points wall;
+    struct orl_log log = log_to(said);
+    assert_int_equal(orl_points_init(NULL, &wall, COUNT), ORL_OK);
+    for (size_t i = 0; i < COUNT; i++) {
+        float scale = i % 10 ? square / ROW : 1;
+        wall.position[i][0] = scale * (float)(i % ROW);
+        wall.position[i][1] = scale * (float)(i / ROW);
+    }
+    assert_int_equal(orl_points_write(NULL, ply, &wall, false, NULL), ORL_OK);
+    orl_points_finish(&wall);
+    assert_int_equal(orl_point_parts_make(&log, NULL, ply, file, 1, parts), ORL_OK);
+}
+
+static void parts_fit_wherever_points_crowd(void **state)
+{
+    (void)state;
+    struct said said;
+    struct point_parts parts;
+    size_t total = 0, largest = 0;
+    crowd(12, &said, &parts);
+    for (size_t i = 0; i < parts.count; i++) {
+        size_t own = orl_point_parts_own(&parts, i);
+        assert_between(own, 1, orl_point_parts_max(1));
+        total += own;
+    }
+    assert_int_equal(total, COUNT);
+    assert_int_equal(parts.total, COUNT);
+    assert_null(strstr(said.text, "lie so close together"));
+    orl_point_parts_finish(&parts);
+    // Points at one place cannot be parted.
+    crowd(0, &said, &parts);
+    for (size_t i = 0; i < parts.count; i++)
+        largest = orl_point_parts_own(&parts, i) > largest ? orl_point_parts_own(&parts, i) : largest;
+    assert_between(largest, COUNT * 9 / 10, COUNT);
+    assert_int_equal(parts.total, COUNT);
+    assert_non_null(strstr(said.text, "lie so close together"));
+    orl_point_parts_finish(&parts);
+}
+
 static size_t count_files(void)
 {
     struct orl_names names;
@@ -343,6 +386,7 @@ int main(void)
         cmocka_unit_test(pages_are_a_tree),
         cmocka_unit_test(radii_are_found_where_there_are_none),
         cmocka_unit_test(radii_in_parts_are_those_of_the_whole),
+        cmocka_unit_test(parts_fit_wherever_points_crowd),
         cmocka_unit_test(damage_is_told),
         cmocka_unit_test(odd_clouds_are_refused),
     };
