@@ -35,9 +35,11 @@ static enum orl_result add_source(struct orl_job *job, const struct import_job *
         (view->masked && !source->mask))
         return ORL_ERR_MEMORY;
     // A frame of a clip has no EXIF.
-    return view->picture.kind == IMPORT_PICTURE
-               ? orl_exif_read(job->log, view->picture.path, &source->exif)
-               : ORL_OK;
+    struct orl_picture_info info = {0};
+    if (view->picture.kind == IMPORT_PICTURE)
+        ORL_TRY(orl_picture_inspect(job->log, view->picture.path, &info));
+    source->exif = info.exif;
+    return ORL_OK;
 }
 
 static enum orl_result begin(struct orl_job *job, const struct import_job *import,

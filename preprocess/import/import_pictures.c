@@ -303,6 +303,8 @@ static enum orl_result settle_camera(struct import_job *job, struct import_view 
     if (info.panorama)
         return orl_fail(job->log, ORL_ERR_UNSUPPORTED, "%s: " ORL_PANORAMA_ADVICE, path);
     view->gain_map = info.gain_map;
+    if (!job->sequence) // the pixels stay as they are stored; what is upright is known to the scene alone
+        view->orientation = info.exif.orientation;
     if (target->width) // known from an earlier picture of the same camera
         return ORL_OK;
     ORL_TRY(orl_known_camera_settle(job->log, &job->known, view->camera, path, info.width, info.height));
@@ -357,15 +359,6 @@ static enum orl_result import_sequence(struct import_job *job, struct import_vie
     return result;
 }
 
-// The pixels stay as they are stored; what is upright is known to the scene alone.
-static enum orl_result read_orientation(const struct import_job *job, struct import_view *view)
-{
-    struct orl_exif exif;
-    enum orl_result result = orl_exif_read(job->log, view->picture.path, &exif);
-    view->orientation = result == ORL_OK ? exif.orientation : 0;
-    return result;
-}
-
 static enum orl_result import_view(struct import_job *job, struct import_view *view)
 {
     struct orl_background background = {0};
@@ -378,7 +371,6 @@ static enum orl_result import_view(struct import_job *job, struct import_view *v
         result = settle_camera(job, view, view->picture.path);
         ORL_THEN(result, import_picture(job, view, -1, view->picture.path, view->mask.path, &background));
         ORL_THEN(result, write_linear(job, view));
-        ORL_THEN(result, read_orientation(job, view));
     }
     if (result == ORL_OK && background.count)
         result = write_background(job, view, &background);

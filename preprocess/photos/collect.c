@@ -143,8 +143,7 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
     struct orl_image image = {0};
     struct orl_picture_info info;
     if (orl_file_hash(&log, source->path, &source->hash) != ORL_OK ||
-        orl_picture_inspect(&log, source->path, &info) != ORL_OK ||
-        orl_exif_read(&log, source->path, &source->exif) != ORL_OK)
+        orl_picture_inspect(&log, source->path, &info) != ORL_OK)
         return false;
     source->width = info.width;
     source->height = info.height;
@@ -152,6 +151,7 @@ static bool inspect(const struct orl_job *job, struct orl_source *source, struct
     source->profiled = info.profiled;
     source->unbounded = info.unbounded;
     source->gain_map = info.gain_map;
+    source->exif = info.exif;
     if (info.panorama) {
         snprintf(reason->text, sizeof reason->text, "%s", ORL_PANORAMA_ADVICE);
         return false;

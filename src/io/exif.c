@@ -135,13 +135,19 @@ static void get_place(ExifData *data, struct orl_exif *exif)
 enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *bytes,
                                 size_t size, struct orl_exif *exif)
 {
+    struct orl_bytes block = {0};
     memset(exif, 0, sizeof *exif);
-    ExifData *data = size <= UINT_MAX ? exif_data_new() : NULL;
-    if (!data)
+    enum orl_result result = orl_bytes_add(log, &block, "Exif\0", 6); // which libexif wants ahead of it
+    ORL_THEN(result, orl_bytes_add(log, &block, bytes, size));
+    ExifData *data = result == ORL_OK && block.size <= UINT_MAX ? exif_data_new() : NULL;
+    if (!data) {
+        free(block.data);
         return orl_fail(log, ORL_ERR_MEMORY, "%s: no memory to read EXIF", path);
+    }
     // Without this libexif adds defaults that the specification asks for and the file lacks.
     exif_data_unset_option(data, EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
-    exif_data_load_data(data, bytes, (unsigned)size);
+    exif_data_load_data(data, (const uint8_t *)block.data, (unsigned)block.size);
+    free(block.data);
     get_text(data, EXIF_IFD_0, EXIF_TAG_MAKE, exif->make, sizeof exif->make);
     get_text(data, EXIF_IFD_0, EXIF_TAG_MODEL, exif->model, sizeof exif->model);
     double apex;

@@ -45,26 +45,21 @@ static enum orl_result open_heif(struct heif_job *job)
 static enum orl_result read_exif(const struct heif_job *job)
 {
     struct orl_picture_file *file = job->file;
-    static const uint8_t head[6] = "Exif\0";
     heif_item_id id;
     if (heif_image_handle_get_list_of_metadata_block_IDs(job->picture, "Exif", &id, 1) < 1)
         return ORL_OK;
     size_t size = heif_image_handle_get_metadata_size(job->picture, id);
-    uint8_t *room = orl_array(file->log, sizeof head + size, 1);
-    ORL_TRY_MEMORY(room);
-    uint8_t *block = room + sizeof head;
-    enum orl_result result =
-        check(job, heif_image_handle_get_metadata(job->picture, id, block));
+    uint8_t *block = orl_array(file->log, size, 1);
+    ORL_TRY_MEMORY(block);
+    enum orl_result result = check(job, heif_image_handle_get_metadata(job->picture, id, block));
     size_t start = size < 4 ? size
                             : 4 + ((size_t)block[0] << 24 | (size_t)block[1] << 16 |
                                    (size_t)block[2] << 8 | (size_t)block[3]);
     if (result == ORL_OK && start < size) {
-        uint8_t *data = block + start - sizeof head; // over what stands ahead of the TIFF data
-        memcpy(data, head, sizeof head);
-        result = orl_exif_decode(file->log, file->path, data, sizeof head + size - start, &file->exif);
-        file->exif.orientation = 1; // the pixels are turned already
+        result = orl_exif_decode(file->log, file->path, block + start, size - start, &file->info.exif);
+        file->info.exif.orientation = 1; // the pixels are turned already
     }
-    free(room);
+    free(block);
     return result;
 }
 

@@ -17,7 +17,6 @@ struct orl_picture_file {
     int channels;   // wanted: 1: of JPEG the luma that it holds; 4: of PNG with alpha, opaque where there is none
     // Set by the reader:
     struct orl_picture_info info;
-    struct orl_exif exif;
     struct orl_profile *profile; // owned; NULL: the colours are taken as sRGB
     bool light;                  // pixels are linear light
 };
@@ -70,7 +69,7 @@ enum orl_result orl_profile_to_srgb(const struct orl_log *log, const struct orl_
 
 // Copies a text of at most `count` bytes, which ends before a zero byte, into `size` bytes.
 void orl_exif_text(const void *bytes, size_t count, char *text, size_t size);
-// Decodes a block "Exif\0\0...". A damaged block gives zeroes and a warning.
+// Decodes the TIFF data of EXIF, which follow "Exif\0\0" where a file has that. Damaged data give zeroes.
 enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, const uint8_t *data,
                                 size_t size, struct orl_exif *exif);
 // Encodes `exif` as a block "Exif\0\0...", released with free().

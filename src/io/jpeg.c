@@ -129,7 +129,7 @@ static enum orl_result take_header(j_decompress_ptr info, struct orl_picture_fil
             exif = marker;
     }
     if (exif)
-        ORL_TRY(orl_exif_decode(file->log, file->path, exif->data, exif->data_length, &file->exif));
+        ORL_TRY(orl_exif_decode(file->log, file->path, exif->data + 6, exif->data_length - 6, &file->info.exif));
     jpeg_read_icc_profile(info, &icc, &icc_size);
     orl_picture_set_profile(file, icc, icc_size, 0, &(struct orl_primaries){0});
     free(icc);

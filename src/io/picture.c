@@ -77,7 +77,7 @@ void orl_picture_set_profile(struct orl_picture_file *file, const void *icc, siz
     else if (gamma > 0 || told)
         file->profile = orl_profile_create_rgb(file->profile_log, file->path,
                                                told ? primaries : &orl_primaries_rec709, gamma > 0 ? 1 / gamma : 0);
-    else if (file->exif.adobe_rgb)
+    else if (file->info.exif.adobe_rgb)
         file->profile = orl_profile_create_rgb(file->profile_log, file->path, &adobe, adobe_gamma);
     file->info.profiled = file->profile != NULL;
 }
@@ -130,7 +130,7 @@ static enum orl_result read_file(struct orl_picture_file *file, struct orl_image
     ORL_TRY(orl_picture_open(file));
     orl_picture_reader *read = find_reader(file);
     enum orl_result result = read ? read(file, image) : ORL_ERR_FORMAT;
-    file->info.panorama |= file->exif.panorama;
+    file->info.panorama |= file->info.exif.panorama;
     fclose(file->stream);
     if (result != ORL_OK || !image)
         orl_profile_destroy(&file->profile);
@@ -155,14 +155,6 @@ enum orl_result orl_picture_size(const struct orl_log *log, const char *path, in
     enum orl_result result = orl_picture_inspect(log, path, &info);
     *width = info.width;
     *height = info.height;
-    return result;
-}
-
-enum orl_result orl_exif_read(const struct orl_log *log, const char *path, struct orl_exif *exif)
-{
-    struct orl_picture_file file = {.log = log, .path = path};
-    enum orl_result result = read_file(&file, NULL);
-    *exif = file.exif;
     return result;
 }
 

@@ -6,6 +6,19 @@
 
 #include "oriel/image.h"
 
+// Values from EXIF; 0 or "" where EXIF has none.
+struct orl_exif {
+    char make[64], model[64];
+    double exposure_s, aperture, iso, bias_ev;
+    double focal_mm, focal_35mm;
+    int orientation; // 1 to 8
+    bool panorama;   // stitched by an iPhone
+    bool adobe_rgb;  // the colours are those of Adobe RGB (DCF 2.0)
+    double taken_s;  // when, by the camera's own clock, in seconds; 0: unknown
+    bool placed;     // is its position known?
+    double latitude, longitude; // degrees, north and east positive
+};
+
 // Facts from the file's header.
 struct orl_picture_info {
     int width, height;
@@ -14,6 +27,7 @@ struct orl_picture_info {
     bool panorama;  // EXIF says so, or XMP in JPEG and PNG (GPano)
     bool gain_map;  // JPEG and HEIF: HDR by a gain map, which is not used
     bool profiled;  // JPEG and PNG: the colours are not those of sRGB
+    struct orl_exif exif;
 };
 #define ORL_PANORAMA_ADVICE                                                                        \
     "a panorama; Oriel needs pictures of ordinary lenses: cut flat views out of it"
@@ -50,21 +64,6 @@ bool orl_picture_is_png(const char *path);
 enum orl_result orl_png_write(const struct orl_log *log, const char *path,
                               const struct orl_image *image) ORL_CHECK_RESULT;
 
-// Values from EXIF; 0 or "" where EXIF has none.
-struct orl_exif {
-    char make[64], model[64];
-    double exposure_s, aperture, iso, bias_ev;
-    double focal_mm, focal_35mm;
-    int orientation; // 1 to 8
-    bool panorama;   // stitched by an iPhone
-    bool adobe_rgb;  // the colours are those of Adobe RGB (DCF 2.0)
-    double taken_s;  // when, by the camera's own clock, in seconds; 0: unknown
-    bool placed;     // is its position known?
-    double latitude, longitude; // degrees, north and east positive
-};
-// A file without EXIF gives ORL_OK and zeroes; only unreadable files are errors.
-enum orl_result orl_exif_read(const struct orl_log *log, const char *path,
-                              struct orl_exif *exif) ORL_CHECK_RESULT;
 // log2 of the exposure: log2(exposure_s * iso / 100 / aperture^2). A larger value gives a brighter
 // picture of the same scene. False when the exposure time is unknown; a missing aperture or ISO
 // speed counts as constant.

@@ -98,28 +98,14 @@ static void read_primaries(const struct png_job *job, struct orl_primaries *p)
                            &p->green[0], &p->green[1], &p->blue[0], &p->blue[1]);
 }
 
-static enum orl_result take_exif(const struct png_job *job, struct orl_picture_file *file)
-{
-    struct orl_bytes block = {0};
-    png_uint_32 size = 0;
-    png_bytep exif = NULL;
-    if (!png_get_eXIf_1(job->png, job->info, &size, &exif) || !size)
-        return ORL_OK;
-    enum orl_result result = orl_bytes_add(job->log, &block, "Exif\0", 6);
-    ORL_THEN(result, orl_bytes_add(job->log, &block, exif, size));
-    ORL_THEN(result, orl_exif_decode(job->log, job->path, (const uint8_t *)block.data, block.size, &file->exif));
-    free(block.data);
-    return result;
-}
-
 static enum orl_result take_header(const struct png_job *job, struct orl_picture_file *file)
 {
     struct orl_primaries primaries = {0};
     double gamma = 0;
     png_charp name;
-    png_bytep icc = NULL;
+    png_bytep icc = NULL, exif = NULL;
     int compression;
-    png_uint_32 icc_size = 0;
+    png_uint_32 icc_size = 0, exif_size = 0;
     enum orl_result result = ORL_OK;
     ORL_TRY(orl_picture_set_size(file, png_get_image_width(job->png, job->info),
                                  png_get_image_height(job->png, job->info)));
@@ -129,7 +115,8 @@ static enum orl_result take_header(const struct png_job *job, struct orl_picture
     for (int i = 0; i < text_count; i++)
         file->info.panorama |= strcmp(texts[i].key, "XML:com.adobe.xmp") == 0 &&
                                orl_xmp_tells_panorama(texts[i].text, strlen(texts[i].text));
-    ORL_TRY(take_exif(job, file));
+    if (png_get_eXIf_1(job->png, job->info, &exif_size, &exif) && exif_size)
+        ORL_TRY(orl_exif_decode(job->log, job->path, exif, exif_size, &file->info.exif));
     if (!read_code_points(job, &gamma, &primaries, &result)) {
         (void)png_get_iCCP(job->png, job->info, &name, &compression, &icc, &icc_size);
         gamma = gamma_of(job);

@@ -59,7 +59,7 @@ static enum orl_result read_header(struct orl_picture_file *file, libraw_data_t 
 {
     // EXIF orientation for each of LibRaw's flip values.
     static const int orientations[8] = {[0] = 1, [3] = 3, [5] = 8, [6] = 6};
-    struct orl_exif *exif = &file->exif;
+    struct orl_exif *exif = &file->info.exif;
     int flip = raw->sizes.flip; // read before LibRaw replaces it by user_flip
     ORL_TRY(check(file, libraw_adjust_sizes_info_only(raw)));
     ORL_TRY(orl_picture_set_size(file, raw->sizes.iwidth, raw->sizes.iheight));

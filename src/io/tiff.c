@@ -237,7 +237,7 @@ enum orl_result orl_tiff_read(struct orl_picture_file *file, struct orl_image *i
         ORL_THEN(result, orl_image_init(file->log, image, file->info.width, file->info.height, 3, ORL_PIXEL_F32));
         ORL_THEN(result, read_tiles(&job, image));
     } else if (result == ORL_OK) {
-        read_exif(job.tiff, &file->exif);
+        read_exif(job.tiff, &file->info.exif);
     }
     if (job.tiff)
         TIFFClose(job.tiff);

@@ -41,10 +41,10 @@ static enum orl_result expose(const struct job *job, const char *from, const cha
 {
     struct orl_image image = {0}, light = {0}, photo = {0};
     struct orl_synth_sensor sensor = {.exposure_ev = ev, .noise = job->noise, .key = key};
-    struct orl_exif exif = {0};
+    struct orl_picture_info info = {0};
     enum orl_result result = orl_picture_read(&job->log, from, 3, &image);
     if (result == ORL_OK)
-        result = orl_exif_read(&job->log, from, &exif);
+        result = orl_picture_inspect(&job->log, from, &info);
     if (result == ORL_OK)
         result = orl_image_init(&job->log, &light, image.width, image.height, 3, ORL_PIXEL_F32);
     size_t values = 3 * (size_t)image.width * (size_t)image.height;
@@ -52,12 +52,12 @@ static enum orl_result expose(const struct job *job, const char *from, const cha
         light.f32[i] = orl_srgb_decode((float)image.u8[i] / 255);
     if (result == ORL_OK)
         result = orl_synth_expose(&job->log, &light, &sensor, &photo);
-    exif.exposure_s = exp2(ev) / 250;
-    exif.aperture = 8;
-    exif.iso = 100;
-    exif.bias_ev = ev;
+    info.exif.exposure_s = exp2(ev) / 250;
+    info.exif.aperture = 8;
+    info.exif.iso = 100;
+    info.exif.bias_ev = ev;
     if (result == ORL_OK)
-        result = orl_jpeg_write(&job->log, to, &photo, 97, &exif);
+        result = orl_jpeg_write(&job->log, to, &photo, 97, &info.exif);
     orl_image_finish(&image);
     orl_image_finish(&light);
     orl_image_finish(&photo);

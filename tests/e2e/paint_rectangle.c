@@ -18,17 +18,17 @@ static void paint(struct orl_image *image, const char *const numbers[5])
 int main(int argc, char **argv)
 {
     struct orl_image image;
-    struct orl_exif exif; // so that the photograph still is of its camera
+    struct orl_picture_info info; // so that the photograph still is of its camera
     if (argc != 8) {
         fprintf(stderr, "usage: paint_rectangle IN OUT.jpg LEFT TOP WIDTH HEIGHT VALUE\n");
         return 2;
     }
     enum orl_result result = orl_picture_read(NULL, argv[1], 3, &image);
     if (result == ORL_OK)
-        result = orl_exif_read(NULL, argv[1], &exif);
+        result = orl_picture_inspect(NULL, argv[1], &info);
     if (result == ORL_OK) {
         paint(&image, (const char *const *)&argv[3]);
-        result = orl_jpeg_write(NULL, argv[2], &image, 95, &exif);
+        result = orl_jpeg_write(NULL, argv[2], &image, 95, &info.exif);
     }
     orl_image_finish(&image);
     return result == ORL_OK ? 0 : 1;

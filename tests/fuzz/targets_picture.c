@@ -28,14 +28,13 @@ static void write_again(const struct orl_image *image)
 static void read_picture(const char *name)
 {
     struct orl_picture_info info;
-    struct orl_exif exif;
     struct orl_image image;
     double ev;
     int width = 0, height = 0;
     const char *path = fuzz_path(name);
     bool known = orl_picture_inspect(&fuzz_log, path, &info) == ORL_OK;
-    if (orl_exif_read(&fuzz_log, path, &exif) == ORL_OK)
-        (void)orl_exif_exposure_ev(&exif, &ev);
+    if (known)
+        (void)orl_exif_exposure_ev(&info.exif, &ev);
     (void)!orl_picture_size(&fuzz_log, path, &width, &height);
     for (int channels = 1; channels <= 3; channels += 2) {
         path = fuzz_path(name);
@@ -117,13 +116,14 @@ void fuzz_exif(const uint8_t *data, size_t size)
     struct orl_exif exif, again;
     uint8_t *block;
     size_t length;
-    if (orl_exif_decode(&fuzz_log, "exif", data, size, &exif) != ORL_OK)
+    // What follows "Exif\0\0" is decoded.
+    if (size < 6 || orl_exif_decode(&fuzz_log, "exif", data + 6, size - 6, &exif) != ORL_OK)
         return;
     fuzz_require(isfinite(exif.exposure_s) && isfinite(exif.aperture) && isfinite(exif.iso) &&
                      isfinite(exif.bias_ev) && exif.orientation >= 0 && exif.orientation <= 8,
                  "EXIF's numbers are numbers");
     fuzz_require(orl_exif_encode(&fuzz_log, &exif, &block, &length) == ORL_OK &&
-                     orl_exif_decode(&fuzz_log, "exif", block, length, &again) == ORL_OK,
+                     orl_exif_decode(&fuzz_log, "exif", block + 6, length - 6, &again) == ORL_OK,
                  "EXIF can be written");
     free(block);
 }

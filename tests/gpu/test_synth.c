@@ -327,8 +327,9 @@ static void photograph_is_the_exposed_radiance(const struct folders *f, const ch
     for (size_t i = 0; i < count; i++)
         squares += pow((double)photo.u8[i] - expected.u8[i], 2);
     assert_true(sqrt(squares / (double)count) < 2.5); // JPEG at quality 97
-    struct orl_exif exif;
-    assert_int_equal(orl_exif_read(NULL, path, &exif), ORL_OK);
+    struct orl_picture_info info;
+    assert_int_equal(orl_picture_inspect(NULL, path, &info), ORL_OK);
+    const struct orl_exif exif = info.exif;
     assert_string_equal(exif.make, "Oriel");
     assert_true(fabs(log2(exif.exposure_s * 250) - ev) < 0.01);
     assert_true(exif.iso == 100 && exif.aperture == 8);

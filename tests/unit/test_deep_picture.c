@@ -832,7 +832,7 @@ static void raw_is_linear_with_the_cameras_white_balance(void **state)
 {
     (void)state;
     const char *path = in_dir("a.dng");
-    struct orl_exif exif;
+    struct orl_picture_info info;
     if (!write_dng(path)) {
         printf("skipped: this libtiff cannot write a DNG\n");
         skip();
@@ -846,8 +846,8 @@ static void raw_is_linear_with_the_cameras_white_balance(void **state)
     for (int c = 0; c < 3; c++)
         assert_float_equal(image.f32[3 * (62 * W + 82) + c], 1, 0.01);
     orl_image_finish(&image);
-    assert_int_equal(orl_exif_read(NULL, path, &exif), ORL_OK);
-    assert_string_equal(exif.model, "Test");
+    assert_int_equal(orl_picture_inspect(NULL, path, &info), ORL_OK);
+    assert_string_equal(info.exif.model, "Test");
 
     uint8_t *data;
     size_t size;

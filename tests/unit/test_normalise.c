@@ -72,10 +72,10 @@ static void dark_photographs_are_brightened(void **state)
         orl_image_finish(&image);
     }
     // COLMAP reads the focal length from it.
-    struct orl_exif exif;
+    struct orl_picture_info info;
     char *copy = orl_path_join(NULL, w.dir, "copies/1.jpg");
-    assert_int_equal(orl_exif_read(NULL, copy, &exif), ORL_OK);
-    assert_float_equal(exif.focal_35mm, 28, 0);
+    assert_int_equal(orl_picture_inspect(NULL, copy, &info), ORL_OK);
+    assert_float_equal(info.exif.focal_35mm, 28, 0);
     free(copy);
     world_close(&w);
 }

@@ -343,7 +343,7 @@ static void random_damage_never_crashes(void **state)
                 copy[noise(&seed) % (round % 2 ? size : 64)] ^= (uint8_t)(1u << noise(&seed) % 8);
             write_bytes(copy, size);
             struct orl_image image;
-            struct orl_exif exif;
+            struct orl_picture_info info;
             int width, height;
             enum orl_result result = read_back(round % 3 ? 3 : 1, &image);
             assert_true(result == ORL_OK ? image.data != NULL : image.data == NULL);
@@ -351,8 +351,8 @@ static void random_damage_never_crashes(void **state)
             orl_image_finish(&image);
             result = orl_picture_size(NULL, file, &width, &height);
             assert_true(result == ORL_OK ? width > 0 && height > 0 : width == 0 && height == 0);
-            result = orl_exif_read(NULL, file, &exif);
-            assert_true(result == ORL_OK || exif.make[0] == '\0');
+            result = orl_picture_inspect(NULL, file, &info);
+            assert_true(result == ORL_OK || info.exif.make[0] == '\0');
         }
         assert_true(failed > 100);
         free(copy);
