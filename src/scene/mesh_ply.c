@@ -16,6 +16,12 @@ static bool find_three(const struct orl_ply_element *element, const char *const 
     return true;
 }
 
+// The factor that brings a colour of this type to 255 at white, which is 1 of floats.
+static double color_scale(enum orl_ply_type type)
+{
+    return type >= ORL_PLY_FLOAT32 ? 255 : type == ORL_PLY_UINT16 ? 255.0 / 65535 : 1;
+}
+
 static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_element *element,
                                      struct orl_mesh_builder *builder)
 {
@@ -41,7 +47,7 @@ static enum orl_result read_vertices(struct orl_ply *ply, const struct orl_ply_e
             mesh->position[i][k] = (float)(record[at[k]] - builder->origin[k]);
             if (normals)
                 mesh->normal[i][k] = (float)record[n_at[k]];
-            double c = colors ? record[c_at[k]] * orl_ply_color_scale(element, c_at[k]) : 0;
+            double c = colors ? record[c_at[k]] * color_scale(element->properties[c_at[k]].type) : 0;
             if (colors)
                 mesh->color[i][k] = (uint8_t)(c >= 255 ? 255 : c > 0 ? c + 0.5 : 0);
         }

@@ -71,19 +71,4 @@ enum orl_result orl_ply_record(struct orl_ply *ply, const struct orl_ply_element
 // Index of the property of this name; -1 when there is none.
 int orl_ply_property_index(const struct orl_ply_element *element, const char *name);
 
-// True when the property is a float type. Colours in such a property run from 0 to 1 and must be
-// multiplied by 255.
-static inline bool orl_ply_is_float(const struct orl_ply_element *element, int property)
-{
-    return element->properties[property].type >= ORL_PLY_FLOAT32;
-}
-// The factor that brings a colour of this property's type to 255 at white.
-static inline double orl_ply_color_scale(const struct orl_ply_element *element, int property)
-{
-    enum orl_ply_type type = element->properties[property].type;
-    return orl_ply_is_float(element, property) ? 255
-           : type == ORL_PLY_UINT16            ? 255.0 / 65535
-                                               : 1;
-}
-
 #endif

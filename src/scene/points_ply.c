@@ -143,7 +143,7 @@ static enum orl_result find_color_scale(struct orl_point_stream *s)
         }
     } while (part.count);
     // Floats may exceed white.
-    bool unit = orl_ply_is_float(s->vertex, s->property[RED]) && greatest < 16;
+    bool unit = s->vertex->properties[s->property[RED]].type >= ORL_PLY_FLOAT32 && greatest < 16;
     s->color_scale = unit ? 255 : greatest > 255 ? 255.0 / 65535 : 1;
     return orl_point_stream_seek(s, 0);
 }
