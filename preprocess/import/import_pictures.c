@@ -166,7 +166,7 @@ static enum orl_result take_alpha(const struct import_job *job, struct import_vi
     enum orl_result result = orl_mask_read(job->log, path, true, mask);
     if (result != ORL_OK || !mask->u8)
         return result;
-    result = orl_picture_read_rgba(job->log, path, &rgba);
+    result = orl_picture_read(job->log, path, 4, &rgba);
     size_t count = result == ORL_OK ? (size_t)rgba.width * (size_t)rgba.height : 0;
     for (size_t i = 0; i < 3 * count; i++) {
         int alpha = rgba.u8[4 * (i / 3) + 3];

@@ -14,7 +14,7 @@
 // --- reading ---
 
 // Value n of a numeric entry; false when it is missing or not a number.
-static bool get_nth_number(ExifData *data, ExifIfd ifd, ExifTag tag, size_t n, double *value)
+static bool get_number(ExifData *data, ExifIfd ifd, ExifTag tag, size_t n, double *value)
 {
     ExifEntry *entry = exif_content_get_entry(data->ifd[ifd], tag);
     ExifByteOrder order = exif_data_get_byte_order(data);
@@ -45,16 +45,11 @@ static bool get_nth_number(ExifData *data, ExifIfd ifd, ExifTag tag, size_t n, d
     return isfinite(*value);
 }
 
-static bool get_number(ExifData *data, ExifIfd ifd, ExifTag tag, double *value)
-{
-    return get_nth_number(data, ifd, tag, 0, value);
-}
-
 // 0 when missing, zero or negative: EXIF's quantities here are all positive.
 static double get_positive(ExifData *data, ExifIfd ifd, ExifTag tag)
 {
     double value;
-    return get_number(data, ifd, tag, &value) && value > 0 ? value : 0;
+    return get_number(data, ifd, tag, 0, &value) && value > 0 ? value : 0;
 }
 
 // 65535 in the 16-bit entry refers to the 32-bit ones, of which a camera writes the one that its setting stands for
@@ -109,11 +104,11 @@ static bool get_angle(ExifData *data, ExifTag tag, ExifTag side_tag, char negati
 {
     double parts[3] = {0};
     char side[4];
-    if (!get_nth_number(data, EXIF_IFD_GPS, tag, 0, &parts[0]))
+    if (!get_number(data, EXIF_IFD_GPS, tag, 0, &parts[0]))
         return false;
     // Some write the degrees alone.
     for (size_t i = 1; i < 3; i++)
-        if (!get_nth_number(data, EXIF_IFD_GPS, tag, i, &parts[i]))
+        if (!get_number(data, EXIF_IFD_GPS, tag, i, &parts[i]))
             parts[i] = 0;
     get_text(data, EXIF_IFD_GPS, side_tag, side, sizeof side);
     *angle = parts[0] + parts[1] / 60 + parts[2] / 3600;
@@ -153,14 +148,14 @@ enum orl_result orl_exif_decode(const struct orl_log *log, const char *path, con
     double apex;
     exif->exposure_s = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_TIME);
     if (!(exif->exposure_s > 0) &&
-        get_number(data, EXIF_IFD_EXIF, EXIF_TAG_SHUTTER_SPEED_VALUE, &apex) && fabs(apex) < 32)
+        get_number(data, EXIF_IFD_EXIF, EXIF_TAG_SHUTTER_SPEED_VALUE, 0, &apex) && fabs(apex) < 32)
         exif->exposure_s = exp2(-apex);
     exif->aperture = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FNUMBER);
     if (!(exif->aperture > 0) &&
-        get_number(data, EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE, &apex) && fabs(apex) < 32)
+        get_number(data, EXIF_IFD_EXIF, EXIF_TAG_APERTURE_VALUE, 0, &apex) && fabs(apex) < 32)
         exif->aperture = exp2(apex / 2);
     exif->iso = get_iso(data);
-    if (!get_number(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_BIAS_VALUE, &exif->bias_ev))
+    if (!get_number(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_BIAS_VALUE, 0, &exif->bias_ev))
         exif->bias_ev = 0;
     exif->focal_mm = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH);
     exif->focal_35mm = get_positive(data, EXIF_IFD_EXIF, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM);

@@ -58,7 +58,7 @@ enum orl_result orl_mask_read(const struct orl_log *log, const char *path, bool 
 {
     struct orl_image rgba = {0};
     memset(mask, 0, sizeof *mask);
-    enum orl_result result = orl_picture_read_rgba(log, path, &rgba);
+    enum orl_result result = orl_picture_read(log, path, 4, &rgba);
     bool alpha = result == ORL_OK && alpha_varies(&rgba);
     if (result == ORL_OK && (alpha || !alpha_only))
         result = orl_image_init(log, mask, rgba.width, rgba.height, 1, ORL_PIXEL_U8);

@@ -226,8 +226,11 @@ static enum orl_result to_eight(const struct orl_log *log, bool light, int chann
     return result;
 }
 
-static enum orl_result read_eight(const struct orl_log *log, const char *path, int channels, struct orl_image *image)
+enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
+                                 struct orl_image *image)
 {
+    memset(image, 0, sizeof *image);
+    ORL_REQUIRE(log, channels == 1 || channels == 3 || channels == 4);
     struct orl_picture_file file = {.log = log, .path = path, .channels = channels};
     ORL_TRY(read_file(&file, image));
     enum orl_result result = ORL_OK;
@@ -243,20 +246,6 @@ static enum orl_result read_eight(const struct orl_log *log, const char *path, i
     if (result != ORL_OK)
         orl_image_finish(image);
     return result;
-}
-
-enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
-                                 struct orl_image *image)
-{
-    memset(image, 0, sizeof *image);
-    ORL_REQUIRE(log, channels == 1 || channels == 3);
-    return read_eight(log, path, channels, image);
-}
-
-enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *path,
-                                      struct orl_image *image)
-{
-    return read_eight(log, path, 4, image);
 }
 
 bool orl_exif_exposure_ev(const struct orl_exif *exif, double *ev)

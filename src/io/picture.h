@@ -39,10 +39,11 @@ enum orl_result orl_picture_inspect(const struct orl_log *log, const char *path,
 // Reads the size alone.
 enum orl_result orl_picture_size(const struct orl_log *log, const char *path, int *width,
                                  int *height) ORL_CHECK_RESULT;
-// Reads 8-bit samples; `channels` is 1 (luma) or 3 (RGB). Alpha is dropped, 16-bit samples are
-// rounded, linear light is clipped and sRGB-encoded; so are colours of another profile. EXIF orientation is ignored: pixels stay in
-// the stored order; only HEIF files are turned as they ask, and have orientation 1. A truncated file
-// is an error.
+// Reads 8-bit samples; `channels` is 1 (luma), 3 (RGB) or 4 (RGBA, for masks). 16-bit samples are rounded, linear light
+// is clipped and sRGB-encoded; so are colours of another profile. EXIF orientation is ignored: pixels stay in the stored
+// order; only HEIF files are turned as they ask, and have orientation 1. A truncated file is an error.
+// Of 1 and 3 channels alpha is dropped. As one of 4 it is 255 where the file has none, or its format is not PNG; colour
+// profiles do not matter then, and samples of more bits are rounded up, so that nothing but 0 becomes 0.
 enum orl_result orl_picture_read(const struct orl_log *log, const char *path, int channels,
                                  struct orl_image *image) ORL_CHECK_RESULT;
 // Reads linear light, F32 x3, Rec. 709 primaries. 8- and 16-bit samples are taken as sRGB with
@@ -51,10 +52,6 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
 // camera's white balance and are 1 where the sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;
-// Reads 8-bit RGBA for masks, whatever the colour profile. Alpha is 255 where the file has none, or its format is not
-// PNG. Samples of more bits are rounded up, so that nothing but 0 becomes 0.
-enum orl_result orl_picture_read_rgba(const struct orl_log *log, const char *path,
-                                      struct orl_image *image) ORL_CHECK_RESULT;
 // True when the extension is that of a camera RAW format.
 bool orl_picture_is_raw(const char *path);
 // True when the extension is that of PNG.

@@ -436,7 +436,7 @@ static void write_grey_tiff(const char *path, cmsUInt32Number size)
 static void expect_stored(const char *path, const uint8_t pixel[3])
 {
     struct orl_image rgba;
-    assert_int_equal(orl_picture_read_rgba(NULL, path, &rgba), ORL_OK);
+    assert_int_equal(orl_picture_read(NULL, path, 4, &rgba), ORL_OK);
     for (size_t i = 0; i < orl_image_bytes(&rgba); i++)
         assert_int_equal(rgba.u8[i], i % 4 == 3 ? 255 : pixel[i % 4]);
     orl_image_finish(&rgba);
