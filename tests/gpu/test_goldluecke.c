@@ -74,6 +74,13 @@ static float field_at(const struct voxels *v, double x, double y, double z)
     return v->field[index];
 }
 
+// Of `side` voxels each way.
+static void carve(const struct ball_scene *scene, int side, struct cones *cones, struct voxels *voxels)
+{
+    assert_int_equal(orl_cones_make(NULL, scene->all, RING, side, cones), ORL_OK);
+    assert_int_equal(orl_voxels_carve(gpu, cones, voxels), ORL_OK);
+}
+
 // Equal to what the processor finds, but for the steps in which a texture is sampled between pixels.
 static void the_hull_is_the_and_of_partial_hulls(void **state)
 {
@@ -81,11 +88,10 @@ static void the_hull_is_the_and_of_partial_hulls(void **state)
     static const double centre[1][3] = {{0.1, -0.05, 0}};
     struct ball_scene scene;
     struct voxels voxels, turned;
-    struct cones cones;
+    struct cones cones, others;
     float *field;
     setup_balls(&scene, centre, 1);
-    assert_int_equal(orl_voxels_carve(gpu, scene.all, RING, 32, &voxels), ORL_OK);
-    assert_int_equal(orl_cones_make(NULL, scene.all, RING, 32, &cones), ORL_OK);
+    carve(&scene, 32, &cones, &voxels);
     assert_int_equal(orl_cones_field(NULL, &cones, &field), ORL_OK);
     int inside = 0;
     for (int i = 0; i < 32 * 32 * 32; i++) {
@@ -97,11 +103,12 @@ static void the_hull_is_the_and_of_partial_hulls(void **state)
     struct orl_silhouette last = scene.all[RING - 1];
     scene.all[RING - 1] = scene.all[0];
     scene.all[0] = last;
-    assert_int_equal(orl_voxels_carve(gpu, scene.all, RING, 32, &turned), ORL_OK);
+    carve(&scene, 32, &others, &turned);
     assert_memory_equal(voxels.field, turned.field, 32 * 32 * 32 * sizeof *voxels.field);
     orl_voxels_finish(&voxels);
     orl_voxels_finish(&turned);
     orl_cones_finish(&cones);
+    orl_cones_finish(&others);
     free(field);
     finish_balls(&scene);
 }
@@ -112,8 +119,9 @@ static void several_objects_have_room_between(void **state)
     static const double centres[2][3] = {{-0.9, 0, 0.1}, {0.9, 0.1, -0.1}};
     struct ball_scene scene;
     struct voxels voxels;
+    struct cones cones;
     setup_balls(&scene, centres, 2);
-    assert_int_equal(orl_voxels_carve(gpu, scene.all, RING, 48, &voxels), ORL_OK);
+    carve(&scene, 48, &cones, &voxels);
     assert_true(field_at(&voxels, -0.9, 0, 0.1) < 0 && field_at(&voxels, 0.9, 0.1, -0.1) < 0);
     assert_true(field_at(&voxels, 0, 0.05, 0) > 0);
     for (size_t i = 0; i < voxels.count; i++) {
@@ -125,6 +133,7 @@ static void several_objects_have_room_between(void **state)
         assert_true(nearest < 0.9);
     }
     orl_voxels_finish(&voxels);
+    orl_cones_finish(&cones);
     finish_balls(&scene);
 }
 

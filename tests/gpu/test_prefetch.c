@@ -163,10 +163,11 @@ static struct prefetch *prepare(struct stage *s)
     assert_int_equal(orl_prefetch_create(&s->frame, 1, &prefetch), ORL_OK);
     assert_int_equal(orl_prefetch_time_step(prefetch), 1);
     orl_prefetch_want(prefetch, all, CAMERAS);
-    orl_prefetch_wait(prefetch);
+    orl_prefetch_show(prefetch, &s->photos); // waits for the silhouettes
     assert_int_equal(orl_prefetch_carve(gpu, prefetch), ORL_OK);
     assert_int_equal(orl_prefetch_collect(gpu, prefetch), ORL_OK);
-    orl_prefetch_wait(prefetch);
+    orl_photo_loader_wait(s->photos.ahead);
+    orl_prefetch_show(NULL, &s->photos);
     return prefetch;
 }
 

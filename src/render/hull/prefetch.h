@@ -15,7 +15,7 @@ struct prefetch;
 // NULL if files of the time step are missing.
 enum orl_result orl_prefetch_create(const struct frame *frame, int time_step,
                                     struct prefetch **out) ORL_CHECK_RESULT;
-// Waits for the file that is being read. Needs no orl_prefetch_wait.
+// Waits for the silhouettes that are being read, and for the mesh that is being made.
 void orl_prefetch_destroy(struct orl_gpu *gpu, struct prefetch **prefetch);
 int orl_prefetch_time_step(const struct prefetch *prefetch);
 // Asks for photographs, in this order.
@@ -25,8 +25,6 @@ enum orl_result orl_prefetch_carve(struct orl_gpu *gpu, struct prefetch *prefetc
 // Gives the thread what the device has carved. Waits for the device.
 enum orl_result orl_prefetch_collect(struct orl_gpu *gpu,
                                      struct prefetch *prefetch) ORL_CHECK_RESULT;
-// Waits until all is done that can be done without another call.
-void orl_prefetch_wait(struct prefetch *prefetch);
 
 // True: the hull is the caller's. It was made for the key (orl_voxels_key) and, unless mesh is NULL,
 // for a mesh. prefetch may be NULL.

@@ -29,12 +29,8 @@ static enum orl_result make(const struct frame *frame, struct voxel_state *state
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct voxels *voxels = &state->voxels;
     struct orl_mesh *mesh = hull ? &state->mesh.mesh : NULL;
-    if (hull && !orl_voxels_silhouettes(frame))
-        return orl_fail(log, ORL_ERR_NOT_FOUND,
-                        "%s: no silhouettes to make a hull of; see oriel import",
-                        frame->scene->dir);
     if (!orl_prefetch_take_hull(frame->gpu, frame->prefetch, state->key, voxels, mesh)) {
-        ORL_TRY(orl_voxels_make(frame, voxels));
+        ORL_TRY(orl_voxels_make(frame, hull, voxels));
         if (hull)
             ORL_TRY(orl_hull_field_mesh(log, &voxels->cube, voxels->field, 0, mesh));
     }

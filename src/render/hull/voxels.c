@@ -12,17 +12,21 @@
 #include "render/proxy/proxy.h"
 #include "shared/hull_blocks.h"
 
-bool orl_voxels_has_silhouette(const struct frame *frame, size_t photo)
+// Whether this photograph's silhouette takes part in the hull of this frame.
+static bool has_silhouette(const struct frame *frame, size_t photo)
 {
     return frame->scene->photos[photo].masked && orl_frame_may_use(frame, photo);
 }
 
-bool orl_voxels_silhouettes(const struct frame *frame)
+enum orl_result orl_voxels_silhouettes(const struct frame *frame, size_t **photos, size_t *count)
 {
+    *count = 0;
+    *photos = orl_array(orl_gpu_log(frame->gpu), frame->scene->photo_count, sizeof **photos);
+    ORL_TRY_MEMORY(*photos);
     for (size_t i = 0; i < frame->scene->photo_count; i++)
-        if (orl_voxels_has_silhouette(frame, i))
-            return true;
-    return false;
+        if (has_silhouette(frame, i))
+            (*photos)[(*count)++] = i;
+    return ORL_OK;
 }
 
 int orl_voxels_side(const struct frame *frame)
@@ -36,7 +40,7 @@ uint64_t orl_voxels_key(const struct frame *frame)
     uint64_t key = XXH3_64bits(&side, sizeof side);
     for (size_t i = 0; i < frame->scene->photo_count; i++) {
         const int64_t silhouette[2] = {(int64_t)i, frame->scene->frame};
-        if (orl_voxels_has_silhouette(frame, i))
+        if (has_silhouette(frame, i))
             key = XXH3_64bits_withSeed(silhouette, sizeof silhouette, key);
     }
     return key;
@@ -147,19 +151,14 @@ enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *c
     return ORL_OK;
 }
 
-enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct orl_silhouette *silhouettes,
-                                 size_t count, int side, struct voxels *voxels)
+enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct cones *cones, struct voxels *voxels)
 {
-    const struct orl_log *log = orl_gpu_log(gpu);
-    struct cones cones;
     struct orl_buf *field = NULL;
     memset(voxels, 0, sizeof *voxels);
-    enum orl_result result = orl_cones_make(log, silhouettes, count, side, &cones);
-    ORL_THEN(result, orl_cones_carve(gpu, &cones, &field));
-    ORL_THEN(result, orl_voxels_read(log, &cones, field, voxels));
-    ORL_THEN(result, orl_voxels_list(log, voxels));
+    enum orl_result result = orl_cones_carve(gpu, cones, &field);
+    ORL_THEN(result, orl_voxels_read(orl_gpu_log(gpu), cones, field, voxels));
+    ORL_THEN(result, orl_voxels_list(orl_gpu_log(gpu), voxels));
     orl_buf_destroy(gpu, &field);
-    orl_cones_finish(&cones);
     if (result != ORL_OK)
         orl_voxels_finish(voxels);
     return result;
@@ -206,41 +205,52 @@ enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_poin
 
 // --- of a frame ---
 
-static enum orl_result read_silhouettes(const struct frame *frame,
-                                        struct orl_silhouette *silhouettes, size_t *count)
+enum orl_result orl_cones_read(const struct orl_log *log, const struct orl_scene *scene, const size_t *photos,
+                               size_t count, int side, struct orl_image *masks, struct cones *cones)
 {
-    const struct orl_log *log = orl_gpu_log(frame->gpu);
-    enum orl_result result = ORL_OK;
-    *count = 0;
-    for (size_t i = 0; result == ORL_OK && i < frame->scene->photo_count; i++) {
-        if (!orl_voxels_has_silhouette(frame, i))
-            continue;
-        struct orl_silhouette *one = &silhouettes[*count];
-        one->view = frame->scene->photos[i].view;
-        result = orl_photo_mask_read(log, frame->scene, i, &one->mask);
-        *count += result == ORL_OK;
+    struct orl_silhouette *all = orl_array(log, count, sizeof *all);
+    enum orl_result result = all ? ORL_OK : ORL_ERR_MEMORY;
+    for (size_t i = 0; result == ORL_OK && i < count; i++) {
+        result = orl_photo_mask_read(log, scene, photos[i], &masks[photos[i]]);
+        all[i] = (struct orl_silhouette){scene->photos[photos[i]].view, masks[photos[i]]};
     }
+    ORL_THEN(result, orl_cones_make(log, all, count, side, cones));
+    free(all);
     return result;
 }
 
-enum orl_result orl_voxels_make(const struct frame *frame, struct voxels *voxels)
+// From the silhouettes of these photographs.
+static enum orl_result carve(const struct frame *frame, const size_t *photos, size_t count, struct voxels *voxels)
+{
+    const struct orl_log *log = orl_gpu_log(frame->gpu);
+    struct orl_image *masks = orl_array(log, frame->scene->photo_count, sizeof *masks);
+    struct cones cones = {0};
+    ORL_TRY_MEMORY(masks);
+    enum orl_result result = orl_cones_read(log, frame->scene, photos, count, orl_voxels_side(frame), masks, &cones);
+    ORL_THEN(result, orl_voxels_carve(frame->gpu, &cones, voxels));
+    for (size_t i = 0; i < count; i++)
+        orl_image_finish(&masks[photos[i]]);
+    free(masks);
+    orl_cones_finish(&cones);
+    return result;
+}
+
+enum orl_result orl_voxels_make(const struct frame *frame, bool hull, struct voxels *voxels)
 {
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     const struct orl_scene *scene = frame->scene;
-    size_t count = 0;
+    size_t *photos, count;
     memset(voxels, 0, sizeof *voxels);
-    if (!orl_voxels_silhouettes(frame)) {
-        if (scene->points.count)
-            return orl_voxels_fill(log, &scene->points, orl_voxels_side(frame), voxels);
-        return orl_fail(log, ORL_ERR_NOT_FOUND, "%s has neither silhouettes nor points to make "
-                        "voxels of; see oriel import", scene->dir);
-    }
-    struct orl_silhouette *silhouettes = orl_array(log, scene->photo_count, sizeof *silhouettes);
-    ORL_TRY_MEMORY(silhouettes);
-    enum orl_result result = read_silhouettes(frame, silhouettes, &count);
-    ORL_THEN(result, orl_voxels_carve(frame->gpu, silhouettes, count, orl_voxels_side(frame), voxels));
-    for (size_t i = 0; i < count; i++)
-        orl_image_finish(&silhouettes[i].mask);
-    free(silhouettes);
+    enum orl_result result = orl_voxels_silhouettes(frame, &photos, &count);
+    if (result == ORL_OK && count)
+        result = carve(frame, photos, count, voxels);
+    else if (result == ORL_OK && hull)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s: no silhouettes to make a hull of; see oriel import", scene->dir);
+    else if (result == ORL_OK && scene->points.count)
+        result = orl_voxels_fill(log, &scene->points, orl_voxels_side(frame), voxels);
+    else if (result == ORL_OK)
+        result = orl_fail(log, ORL_ERR_NOT_FOUND, "%s has neither silhouettes nor points to make "
+                          "voxels of; see oriel import", scene->dir);
+    free(photos);
     return result;
 }
