@@ -35,7 +35,7 @@ struct orl_renderer {
 };
 
 // Device memory of everything but photographs: points, and targets of common sizes.
-static size_t fixed_bytes(const struct orl_scene *scene, size_t points, const struct cloud *cloud)
+static size_t fixed_bytes(const struct orl_scene *scene, const struct cloud *cloud)
 {
     int width = 1, height = 1;
     for (size_t i = 0; i < scene->photo_count; i++) {
@@ -43,13 +43,13 @@ static size_t fixed_bytes(const struct orl_scene *scene, size_t points, const st
         width = c->width > width ? c->width : width;
         height = c->height > height ? c->height : height;
     }
-    return (points ? points : scene->points.count * 24) + 2 * orl_splats_target_bytes(cloud, width, height) +
+    return orl_cloud_bytes(cloud) + 2 * orl_splats_target_bytes(cloud, width, height) +
            (size_t)width * (size_t)height * (16 + 38 + 20);
 }
 
 static size_t photo_budget(const struct orl_renderer *r, size_t max_vram_bytes)
 {
-    size_t fixed = fixed_bytes(r->scene, r->point_bytes, r->proxies[0].state);
+    size_t fixed = fixed_bytes(r->scene, r->proxies[0].state);
     size_t budget = max_vram_bytes > fixed ? max_vram_bytes - fixed : 1;
     orl_logf(orl_gpu_log(r->gpu), ORL_LOG_INFO,
              "device memory: %zu MiB allowed, %zu MiB for points and targets, %zu MiB for "

@@ -273,6 +273,25 @@ static void pages_draw_as_the_whole(void **state)
     assert_memory_equal(normal[0], normal[1], sizeof normal[0]);
 }
 
+// What is planned for a cloud is what it takes with its colours.
+static void bytes_are_those_on_the_device(void **state)
+{
+    (void)state;
+    struct scene whole = {0};
+    struct paged pages = {0};
+    make_wall(&whole);
+    const struct orl_scene scene = {.points = whole.points};
+    assert_int_equal(orl_proxy_create(gpu, &scene, &orl_proxy_splats, 0, &whole.proxy), ORL_OK);
+    size_t bytes = orl_cloud_bytes(cloud_of(&whole));
+    assert_int_equal(orl_gpu_owner_bytes(gpu, ORL_OWNER_POINTS), bytes - 3 * whole.points.count);
+    assert_int_equal(orl_cloud_bring_colors(gpu, whole.proxy.state), ORL_OK);
+    assert_int_equal(orl_gpu_owner_bytes(gpu, ORL_OWNER_POINTS), bytes);
+    close_scene(&whole);
+    open_pages(&pages, 1);
+    assert_int_equal(orl_gpu_owner_bytes(gpu, ORL_OWNER_POINTS), orl_cloud_bytes(cloud_of(&pages.s)));
+    close_pages(&pages);
+}
+
 // With room for half of the pages, and for coarse levels where a few points are enough, the wall has
 // no hole; and what was drawn before does not matter.
 static void few_pages_leave_no_hole(void **state)
@@ -318,6 +337,7 @@ int main(void)
         cmocka_unit_test(runs_are_the_same),
         cmocka_unit_test(chunks_draw_as_one),
         cmocka_unit_test(pages_draw_as_the_whole),
+        cmocka_unit_test(bytes_are_those_on_the_device),
         cmocka_unit_test(few_pages_leave_no_hole),
         cmocka_unit_test(no_points_are_no_depth),
     };

@@ -209,6 +209,25 @@ static void short_of_memory_compresses_first(void **state)
     teardown(&f);
 }
 
+// Points are planned as they are on the device: 8.4 bytes, and 3 of their colours.
+static void points_leave_room_for_photographs(void **state)
+{
+    (void)state;
+    struct fixture f;
+    setup_row(&f, PHOTOS);
+    struct orl_renderer *renderer = renderer_of(&f, &(struct orl_renderer_params){0});
+    size_t plain = bytes_of("photographs"), depth = (size_t)PHOTOS * SIDE * SIDE * 4;
+    size_t targets = (size_t)SIDE * SIDE * (2 * 44 + 74), points = f.scene.points.count;
+    orl_renderer_destroy(&renderer);
+    for (size_t point_bytes = 11; point_bytes <= 12; point_bytes++) {
+        renderer = renderer_of(&f, &(struct orl_renderer_params){
+            .max_vram_bytes = plain + depth + targets + point_bytes * points});
+        assert_int_equal(bytes_of("photographs") == plain, point_bytes == 12);
+        orl_renderer_destroy(&renderer);
+    }
+    teardown(&f);
+}
+
 // Two colours, each in its half of the picture: luma keeps each pixel, chroma the mean of 2x2.
 static void ycc_keeps_luma_and_chroma(void **state)
 {
@@ -310,6 +329,7 @@ int main(void)
         cmocka_unit_test(the_scene_says_how_photographs_are_kept),
         cmocka_unit_test(small_depth_maps_are_picked),
         cmocka_unit_test(short_of_memory_compresses_first),
+        cmocka_unit_test(points_leave_room_for_photographs),
         cmocka_unit_test(photographs_are_loaded_as_the_viewer_moves),
     };
     int failed = cmocka_run_group_tests_name("textures", tests, NULL, NULL);

@@ -26,12 +26,16 @@ static enum orl_result make_buffers(struct orl_gpu *gpu, struct point_chunk *chu
     return orl_buf_create(gpu, ORL_OWNER_POINTS, "point list arguments", 16, NULL, GL_R32UI, &chunk->args);
 }
 
+static size_t color_bytes(const struct point_chunk *chunk)
+{
+    return (size_t)chunk->count * 3;
+}
+
 // data: sRGB of each point of the chunk.
 static enum orl_result make_colors(struct orl_gpu *gpu, struct point_chunk *chunk,
                                    uint8_t (*data)[3])
 {
-    return orl_buf_create(gpu, ORL_OWNER_POINTS, "point colours", (size_t)chunk->count * sizeof *data, data, GL_R8UI,
-                          &chunk->colors);
+    return orl_buf_create(gpu, ORL_OWNER_POINTS, "point colours", color_bytes(chunk), data, GL_R8UI, &chunk->colors);
 }
 
 static enum orl_result upload_chunk(struct orl_gpu *gpu, const struct orl_points *all,
@@ -119,6 +123,16 @@ enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
     }
     free(order);
     return result;
+}
+
+size_t orl_cloud_bytes(const struct cloud *cloud)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < cloud->chunk_count; i++) {
+        const struct point_chunk *c = &cloud->chunks[i];
+        bytes += c->points->size + c->blocks->size + c->list->size + c->args->size + color_bytes(c);
+    }
+    return bytes;
 }
 
 enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,

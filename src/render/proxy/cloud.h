@@ -34,6 +34,8 @@ enum orl_result orl_cloud_bring_colors(struct orl_gpu *gpu, struct cloud *cloud)
 // Makes one chunk of this many blocks without a point, with room for colours.
 enum orl_result orl_cloud_empty_chunk(struct orl_gpu *gpu, size_t block_count,
                                       struct cloud *cloud) ORL_CHECK_RESULT;
+// Bytes of device memory that the cloud takes, once its colours are there.
+size_t orl_cloud_bytes(const struct cloud *cloud);
 void orl_cloud_finish(struct orl_gpu *gpu, struct cloud *cloud);
 // How many points a chunk may have on this device: whole blocks.
 size_t orl_cloud_chunk_points(const struct orl_gpu *gpu);
