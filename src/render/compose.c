@@ -2,7 +2,6 @@
 
 #include "render/frame/method.h"
 #include "render/paint/paint.h"
-#include "render/paint/soft_layer.h"
 
 static bool fills(const struct frame *frame)
 {

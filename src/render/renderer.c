@@ -9,7 +9,6 @@
 #include "render/paint/paint.h"
 #include "render/papers/room.h"
 #include "render/photos/photos.h"
-#include "render/photos/progressive.h"
 #include "render/proxy/proxy.h"
 #include "render/proxy/splats.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "io/picture.h"
-#include "render/paint/soft_layer.h"
+#include "render/paint/paint.h"
 #include "shared/constants.h"
 #include "soft/soft_ply.h"
 #include "walk/internal.h"

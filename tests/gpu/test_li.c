@@ -6,7 +6,7 @@
 #include "mesh_help.h"
 #include "render/proxy/mesh_proxy.h"
 #include "render/frame/method.h"
-#include "render/hull/voxel_proxy.h"
+#include "render/hull/voxels.h"
 #include "render/photos/photos.h"
 
 enum { SIDE = 64 };

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "render/frame/method.h"
-#include "render/photos/select.h"
+#include "render/photos/photos.h"
 #include "oriel/points.h"
 #include "wall_scene.h"
 

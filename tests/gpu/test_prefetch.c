@@ -5,7 +5,6 @@
 
 #include "figure_scene.h"
 #include "render/hull/prefetch.h"
-#include "render/hull/voxel_proxy.h"
 #include "render/photos/photos.h"
 
 enum { W = 96, H = 72, CAMERAS = 5, TIME_STEPS = 3 };

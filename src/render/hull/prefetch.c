@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/hull/voxel_proxy.h"
 
 // The hull's way; each step is done by a thread of its own (T) or by the caller (C).
 enum step {

@@ -2,7 +2,7 @@
 // plane, wide enough to cover it from any side (Goldluecke 2003, section 3). `hull`: their visual hull as
 // a mesh (Li 2003, section 4). The paper intersects cones; here the surface is found on a grid of voxels,
 // at the distance from the cones.
-#include "render/hull/voxel_proxy.h"
+#include "render/hull/voxels.h"
 
 #include <math.h>
 #include <stdlib.h>

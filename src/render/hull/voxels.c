@@ -8,7 +8,6 @@
 
 #include "core/memory.h"
 #include "render/photos/photos.h"
-#include "render/photos/select.h"
 #include "render/proxy/proxy.h"
 #include "shared/hull_blocks.h"
 

@@ -3,7 +3,7 @@
 #ifndef ORL_RENDER_VOXELS_H
 #define ORL_RENDER_VOXELS_H
 
-#include "render/frame/frame.h"
+#include "render/proxy/mesh_proxy.h"
 #include "scene/cones.h"
 
 struct voxels {
@@ -51,5 +51,28 @@ enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *voxels
 enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct cones *cones, struct voxels *voxels);
 enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_points *points,
                                 int side, struct voxels *voxels);
+
+// --- voxel_proxy.c: what is carved as the proxy, drawn as billboards or as its hull ---
+
+// State of orl_proxy_hull and orl_proxy_voxels.
+struct voxel_state {
+    struct mesh_state mesh;  // of orl_proxy_hull; first: see mesh_proxy.h
+    uint64_t key;            // orl_voxels_key of the voxels
+    bool said_endless;
+    // Of orl_proxy_voxels:
+    struct voxels voxels;
+    struct orl_buf *centres; // voxels.centre on the device
+    // Per voxel two sets of photographs, `words` words each: bit i of the first for a photograph i
+    // of the scene that sees the whole of the voxel, of the second for one that sees a part. NULL
+    // until they are asked for; owned.
+    uint32_t *seen;
+    size_t words;
+};
+
+// Finds which of the frame's photographs see which voxels of its proxy, unless that is known.
+enum orl_result orl_voxels_see(const struct frame *frame, struct voxel_state *state);
+// Width of a billboard, scene units: no voxel's projection reaches beyond it (Goldluecke 2003,
+// section 3).
+double orl_billboard_width(const struct voxel_state *state);
 
 #endif

@@ -9,7 +9,6 @@
 #include "core/memory.h"
 #include "render/frame/method.h"
 #include "render/photos/photos.h"
-#include "render/photos/progressive.h"
 #include "shared/constants.h"
 
 _Static_assert(sizeof(struct photo_data) == 16 * ORL_PHOTO_VEC4S, "photo_data is vec4s");

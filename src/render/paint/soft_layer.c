@@ -1,8 +1,7 @@
-#include "render/paint/soft_layer.h"
+#include "render/paint/paint.h"
 
 #include <math.h>
 
-#include "render/paint/paint.h"
 #include "render/photos/photos.h"
 #include "shared/constants.h"
 #include "soft/soft_ply.h"

@@ -5,7 +5,6 @@
 #include "render/frame/method.h"
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
-#include "render/photos/progressive.h"
 #include "shared/constants.h"
 
 // For the passes that ask photographs. Without a backdrop that rests they lose no time.

@@ -10,11 +10,9 @@
 #include "core/vec3.h"
 #include "gpu/raster.h"
 #include "render/frame/method.h"
-#include "render/hull/voxel_proxy.h"
+#include "render/hull/voxels.h"
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
-#include "render/photos/progressive.h"
-#include "render/photos/select.h"
 
 // --- two photographs for each voxel ---
 

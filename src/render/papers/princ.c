@@ -9,7 +9,7 @@
 #include "core/vec3.h"
 #include "render/frame/frame.h"
 #include "render/proxy/proxy.h"
-#include "render/photos/select.h"
+#include "render/photos/photos.h"
 #include "scene/depth_buffer.h"
 
 enum {

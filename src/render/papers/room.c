@@ -5,7 +5,6 @@
 #include "render/frame/method.h"
 #include "render/paint/paint.h"
 #include "render/photos/photos.h"
-#include "render/photos/select.h"
 #include "scene/upright.h"
 
 static void place(const struct frame *frame, struct gather_block *block)

@@ -113,4 +113,23 @@ enum orl_result orl_photos_draw_depth(const struct frame *frame, size_t index,
 int orl_photos_depth_divide(const struct frame *frame, size_t photo);
 struct orl_camera orl_photos_depth_camera(const struct photo_state *state, int divide);
 
+// --- select.c ---
+
+// True if the frame may be painted from the photograph.
+bool orl_frame_may_use(const struct frame *frame, size_t photo);
+// The penalty of shaders/shared/penalty.h for a photograph and a world point; negative if the point
+// is outside the photograph. eye: the view's camera centre; view_focal: its fx, pixels.
+double orl_photo_penalty(const struct orl_view *photo, const double eye[3], double view_focal,
+                         const double point[3]);
+
+// --- progressive.c: photographs for the frames of a viewer, which must not wait for them ---
+
+// For a progressive frame: brings chosen photographs to the device, the most useful first, within
+// the frame's time, and removes those from frame->chosen that are not there. Sets the count of
+// missing photographs. depth: the frame needs their depth, too.
+enum orl_result orl_progressive_admit(struct frame *frame, bool depth) ORL_CHECK_RESULT;
+// Before a frame's surface is drawn: may the frame need the proxy's colours, for which the surface
+// must have normals? They cost about a tenth of a frame, so this is guessed from the frame before.
+bool orl_progressive_underpaints(const struct frame *frame);
+
 #endif

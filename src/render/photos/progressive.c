@@ -1,7 +1,7 @@
 // Photographs that a view needs arrive in small steps: the file is read on another thread, then
 // the colours are uploaded, then coarse depth is drawn, and last the depth as every other frame has
 // it. A software renderer draws coarse depth in a fraction of the time of a frame.
-#include "render/photos/progressive.h"
+#include "render/photos/photos.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +10,6 @@
 #include "core/memory.h"
 #include "core/order.h"
 #include "core/process.h"
-#include "render/photos/photos.h"
-#include "render/photos/select.h"
 
 enum {
     COARSE = 4, // coarse depth has 1/COARSE of the size

@@ -1,4 +1,4 @@
-#include "render/photos/select.h"
+#include "render/photos/photos.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/proxy/cloud.h"
+#include "render/proxy/splats.h"
 #include "scene/point_blocks.h"
 
 enum {

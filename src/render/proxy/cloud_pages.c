@@ -1,5 +1,5 @@
 // Pages of points: a cut through the tree of pages for each view, and a pool of them on the device.
-#include "render/proxy/cloud.h"
+#include "render/proxy/splats.h"
 
 #include <math.h>
 #include <stdlib.h>
