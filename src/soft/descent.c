@@ -5,7 +5,6 @@
 
 #include "core/memory.h"
 #include "core/process.h"
-#include "soft/loss.h"
 
 static const double LAST_SIZE = 0.1; // factor on the step sizes of the last step
 static const double LOSS_SMOOTHED = 0.98; // of the running mean

@@ -1,4 +1,4 @@
-#include "soft/loss.h"
+#include "soft/descent.h"
 
 #include <math.h>
 #include <stdlib.h>
