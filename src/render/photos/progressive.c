@@ -98,17 +98,12 @@ static enum orl_result draw_depth(struct loading *loading, size_t photo, int div
     return end_step(loading, start, divide > 1 ? &costs->coarse : &costs->depth);
 }
 
-// The photograph is on the device with colours and, if needed, depth.
-static bool is_present(const struct loading *loading, size_t photo)
+// The depth of a photograph that is on the device with colours has 1/so much of its size; 0: it lacks one of both.
+static int divide_of(const struct loading *loading, size_t photo)
 {
-    return loading->frame->photos->states[photo].has_color &&
-           (!loading->depth || orl_photos_depth_divide(loading->frame, photo) > 0);
-}
-
-static bool is_complete(const struct loading *loading, size_t photo)
-{
-    return is_present(loading, photo) &&
-           (!loading->depth || orl_photos_depth_divide(loading->frame, photo) == 1);
+    if (!loading->frame->photos->states[photo].has_color)
+        return 0;
+    return loading->depth ? orl_photos_depth_divide(loading->frame, photo) : 1;
 }
 
 // Makes photographs usable, then their depth as fine as other frames have it.
@@ -117,19 +112,19 @@ static enum orl_result bring(struct loading *loading)
     const struct photos *photos = loading->frame->photos;
     for (size_t i = 0; i < loading->count; i++) {
         size_t photo = loading->order[i].index;
-        if (is_present(loading, photo))
+        if (divide_of(loading, photo))
             continue;
         if (!fits(loading, photos->costs.color + photos->costs.coarse, true))
             break;
         if (!photos->states[photo].has_color)
             ORL_TRY(upload(loading, photo));
-        if (photos->states[photo].has_color && !is_present(loading, photo))
+        if (photos->states[photo].has_color && !divide_of(loading, photo))
             ORL_TRY(draw_depth(loading, photo, COARSE));
     }
     bool at_rest = loading->frame->progressive->at_rest;
     for (size_t i = 0; i < loading->count; i++) {
         size_t photo = loading->order[i].index;
-        if (!is_present(loading, photo) || is_complete(loading, photo))
+        if (divide_of(loading, photo) <= 1)
             continue;
         if (!fits(loading, photos->costs.depth, at_rest))
             break;
@@ -183,9 +178,9 @@ static void remove_absent(struct frame *frame, const struct loading *loading)
     frame->photos->were_absent = false;
     for (size_t i = 0; i < loading->count; i++)
         frame->photos->were_absent |= frame->photos->states[loading->order[i].index].usable &&
-                                      !is_present(loading, loading->order[i].index);
+                                      !divide_of(loading, loading->order[i].index);
     for (size_t i = 0; i < frame->chosen_count; i++) {
-        if (!is_present(loading, frame->chosen[i]))
+        if (!divide_of(loading, frame->chosen[i]))
             continue;
         frame->chosen[kept] = frame->chosen[i];
         memmove(frame->selected[kept++], frame->selected[i], sizeof frame->selected[i]);
@@ -207,7 +202,7 @@ enum orl_result orl_progressive_admit(struct frame *frame, bool depth)
     ORL_THEN(result, bring(&loading));
     for (size_t i = 0; result == ORL_OK && i < loading.count; i++)
         frame->progressive->missing += frame->photos->states[loading.order[i].index].usable &&
-                                       !is_complete(&loading, loading.order[i].index);
+                                       divide_of(&loading, loading.order[i].index) != 1;
     if (result == ORL_OK)
         remove_absent(frame, &loading);
     frame->progressive->spent = orl_time_s() - loading.start_s;
