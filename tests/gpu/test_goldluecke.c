@@ -78,7 +78,11 @@ static float field_at(const struct voxels *v, double x, double y, double z)
 static void carve(const struct ball_scene *scene, int side, struct cones *cones, struct voxels *voxels)
 {
     assert_int_equal(orl_cones_make(NULL, scene->all, RING, side, cones), ORL_OK);
-    assert_int_equal(orl_voxels_carve(gpu, cones, voxels), ORL_OK);
+    struct orl_buf *field;
+    assert_int_equal(orl_cones_carve(gpu, cones, &field), ORL_OK);
+    assert_int_equal(orl_voxels_read(NULL, cones, field, voxels), ORL_OK);
+    assert_int_equal(orl_voxels_list(NULL, voxels), ORL_OK);
+    orl_buf_destroy(gpu, &field);
 }
 
 // Equal to what the processor finds, but for the steps in which a texture is sampled between pixels.

@@ -150,19 +150,6 @@ enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *c
     return ORL_OK;
 }
 
-enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct cones *cones, struct voxels *voxels)
-{
-    struct orl_buf *field = NULL;
-    memset(voxels, 0, sizeof *voxels);
-    enum orl_result result = orl_cones_carve(gpu, cones, &field);
-    ORL_THEN(result, orl_voxels_read(orl_gpu_log(gpu), cones, field, voxels));
-    ORL_THEN(result, orl_voxels_list(orl_gpu_log(gpu), voxels));
-    orl_buf_destroy(gpu, &field);
-    if (result != ORL_OK)
-        orl_voxels_finish(voxels);
-    return result;
-}
-
 // --- from points ---
 
 // A cube around all points but the outermost hundredth along each axis.
@@ -224,13 +211,19 @@ static enum orl_result carve(const struct frame *frame, const size_t *photos, si
     const struct orl_log *log = orl_gpu_log(frame->gpu);
     struct orl_image *masks = orl_array(log, frame->scene->photo_count, sizeof *masks);
     struct cones cones = {0};
+    struct orl_buf *field = NULL;
     ORL_TRY_MEMORY(masks);
     enum orl_result result = orl_cones_read(log, frame->scene, photos, count, orl_voxels_side(frame), masks, &cones);
-    ORL_THEN(result, orl_voxels_carve(frame->gpu, &cones, voxels));
+    ORL_THEN(result, orl_cones_carve(frame->gpu, &cones, &field));
+    ORL_THEN(result, orl_voxels_read(log, &cones, field, voxels));
+    ORL_THEN(result, orl_voxels_list(log, voxels));
     for (size_t i = 0; i < count; i++)
         orl_image_finish(&masks[photos[i]]);
     free(masks);
+    orl_buf_destroy(frame->gpu, &field);
     orl_cones_finish(&cones);
+    if (result != ORL_OK)
+        orl_voxels_finish(voxels);
     return result;
 }
 

@@ -47,8 +47,7 @@ enum orl_result orl_voxels_read(const struct orl_log *log, const struct cones *c
 // Lists the voxels that stay and touch one that does not: work of the processor alone.
 enum orl_result orl_voxels_list(const struct orl_log *log, struct voxels *voxels) ORL_CHECK_RESULT;
 
-// As orl_voxels_make for given cones (carve) or points (fill).
-enum orl_result orl_voxels_carve(struct orl_gpu *gpu, const struct cones *cones, struct voxels *voxels);
+// As orl_voxels_make for given points.
 enum orl_result orl_voxels_fill(const struct orl_log *log, const struct orl_points *points,
                                 int side, struct voxels *voxels);
 
