@@ -2,8 +2,11 @@
 """Time in the walk: the server's time steps, and the page that plays them, from the server and from static files.
 Made by tests/e2e/walk_time_steps.sh: test_time_steps.py ORIEL SCENE SITE [SCREENSHOT]."""
 import json
+import os
+import shutil
 import struct
 import sys
+import tempfile
 import time
 import unittest
 
@@ -126,7 +129,47 @@ class TimeSteps(unittest.TestCase):
         browser.wait("return seen.size === 3")
         browser.js("oriel.timeSteps.toggle()")
         browser.settle()
+        # A graphics chip that has room for two photographs gets those that the view wants.
+        browser.js("const {photos} = oriel.picture.renderer; photos.slots = 2; "
+                   "oriel.photos.forEach(photo => photo.slot = -1); oriel.timeSteps.show(0)")
+        for photo in range(4):
+            browser.js(f"oriel.navigator.goTo(oriel.photos[{photo}])")
+            browser.settle()
+            self.assertEqual(*browser.js(
+                "const {wanted} = oriel.picture, here = oriel.photos.filter(photo => photo.slot >= 0), "
+                "numbers = list => list.map(photo => photo.number).sort(); return [numbers(wanted), numbers(here)]"))
+            self.assertEqual(browser.js("return oriel.picture.wanted[0].number"), photo)
+        browser.js("oriel.timeSteps.show(1); oriel.navigator.goTo(oriel.photos[1])")
+        browser.settle()
+        off = browser.driver.execute_async_script(DIFFERENCES)
+        self.assertEqual(off.index(min(off)), 1, off)
         self.assertEqual(browser.errors(), [])
+
+    def test_a_time_step_that_is_missing_is_said_once(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        shutil.copytree(SITE, f"{folder.name}/site")
+        os.remove(f"{folder.name}/site/steps/00001/photos/00001.jpg")
+        with open(f"{folder.name}/site/steps/00002/depth/00000.png", "wb") as file:
+            file.write(b"no picture")
+        server = Server(f"{folder.name}/site")
+        self.addCleanup(server.close)
+        browser = Browser(384, 288)
+        self.addCleanup(browser.close)
+        browser.open(server.address)
+        browser.js("window.rounds = window.said = 0; const {timeSteps} = oriel, tell = timeSteps.tell.bind(timeSteps); "
+                   "timeSteps.tell = () => { rounds += timeSteps.timeStep === 0; tell(); }; "
+                   "new MutationObserver(() => said++).observe(document.getElementById('problem'), {childList: true}); "
+                   "timeSteps.toggle()")
+        browser.wait("return said > 0 && oriel.picture.moving.steps.filter(step => step.broken).length === 2")
+        browser.js("rounds = 0")
+        browser.wait("return rounds > 20")
+        browser.js("oriel.timeSteps.show(1)")
+        browser.settle()
+        self.assertEqual(browser.js("return oriel.picture.moving.shown"), 0)
+        said = browser.errors()
+        for what in ("photos/00001.jpg could not be loaded", "could not be decoded"):
+            self.assertEqual(sum(what in error for error in said), 1, said)
 
 
 # Mean differences, of 255, of the picture to the second photograph of each time step.

@@ -56,7 +56,7 @@ export class LocalPicture {
         this.sides = [2, Infinity];
         this.cloud = new Cloud(device, coarse);
         this.renderer = new Renderer(device, sources, manifest, photos, this.cloud, photoBudget());
-        this.moving = manifest.steps ? new Moving(device, files, manifest, photos, onChange) : null;
+        this.moving = manifest.steps ? new Moving(device, files, manifest, onChange) : null;
         this.timeSteps = null; // of the page
         this.allBytes = totalBytes(manifest) + (this.moving ? this.moving.bytes : 0);
         this.lookedAt = 0;
@@ -70,8 +70,7 @@ export class LocalPicture {
             onChange();
         });
         canvas.addEventListener("webglcontextrestored", () => location.reload());
-        for (const photo of this.moving ? [] : photos)
-            this.request(photo);
+        this.request(photos[manifest.start]);
         manifest.points.files.forEach((file, number) => files.schedule(() => this.pointsUrgency(file), async () => {
             this.cloud.addFile(number, await files.get(file.file));
             onChange();
@@ -82,16 +81,20 @@ export class LocalPicture {
 
     // --- loading ---
 
+    // Time steps come with their photographs.
     request(photo)
     {
+        if (photo.asked || this.moving)
+            return;
+        photo.asked = true;
         this.files.schedule(() => this.photoUrgency(photo), () => this.loadPhoto(photo));
     }
 
     // Photographs of the view first, and between them the points that are near.
     photoUrgency(photo)
     {
-        const place = this.rank.indexOf(photo);
-        return place < 0 || place >= this.renderer.photos.slots ? Infinity : place;
+        const place = this.wanted.indexOf(photo);
+        return place < 0 ? Infinity : place;
     }
 
     pointsUrgency(file)
@@ -137,9 +140,7 @@ export class LocalPicture {
         for (const photo of this.wanted) {
             if (photo.slot >= 0)
                 photo.lastUse = ++store.clock;
-            else if (photo.dropped && !this.moving)
-                this.request(photo);
-            photo.dropped = false;
+            this.request(photo);
         }
         this.files.next();
     }
@@ -189,7 +190,7 @@ export class LocalPicture {
     drawInto(camera, layer, whole, part)
     {
         if (this.moving)
-            this.moving.show(this.renderer, ...(this.timeSteps ? this.timeSteps.pair : [0, 0]));
+            this.moving.show(this.renderer, this.timeSteps ? this.timeSteps.pair : [0, 0], this.wanted);
         this.renderer.draw(camera, layer, whole);
         this.renderer.show(layer, whole, part);
     }

@@ -6,20 +6,16 @@ import {Cloud} from "./points.js";
 
 export class Moving {
     // onChange(): another time step is ready.
-    constructor(device, files, manifest, photos, onChange)
+    constructor(device, files, manifest, onChange)
     {
-        Object.assign(this, {device, files, photos, onChange, wanted: 0, shown: -1, ready: null, decoding: false});
+        Object.assign(this, {device, files, onChange, wanted: 0, shown: -1, ready: null, decoding: false});
         this.steps = manifest.steps.map(({points, photos = manifest.photos}) =>
-            ({photos, files: [points, ...photos.flatMap(filesOf)]}));
+            ({photos, files: [points, ...photos.flatMap(filesOf)], broken: false}));
         this.cloud = null;
         this.steps.forEach((step, number) => {
-            step.loaded = new Promise((done, failed) => files.schedule(
+            step.loaded = new Promise(done => files.schedule(
                 () => 1 + (number - this.wanted + this.steps.length) % this.steps.length,
-                () => this.load(step).then(done, error => {
-                    failed(error);
-                    throw error;
-                })));
-            step.loaded.catch(() => {}); // the files say what is wrong
+                () => this.load(step).finally(done)));
         });
     }
 
@@ -28,46 +24,56 @@ export class Moving {
         [step.hull, ...step.pictures] = await Promise.all(step.files.map(file => this.files.get(file.file)));
     }
 
-    get complete() { return this.shown === this.wanted; }
+    get complete() { return this.shown === this.wanted || this.steps[this.wanted].broken; }
 
     get bytes() { return bytesOf(this.steps.flatMap(step => step.files)); }
 
-    // Begins what a frame at time step `now` needs, before which `next` will be shown. What was made in the
-    // meantime is put into the renderer, late or not: time leaves out what there was no time for.
-    show(renderer, now, next)
+    // Begins what a frame at time step `now` needs, before which `next` will be shown, painted from the photographs
+    // `wanted`. What was made in the meantime is put into the renderer, late or not: time leaves out what there was no
+    // time for.
+    show(renderer, [now, next], wanted)
     {
         this.wanted = now;
         if (this.ready)
             this.put(renderer);
-        if (this.decoding || (this.shown === now && next === now))
-            return;
-        const number = this.shown === now ? next : now;
-        if (number !== this.shown)
-            this.decode(number);
+        const usable = [now, next].filter(number => !this.steps[number].broken);
+        const number = usable.find(one => one !== this.shown) ?? usable[0];
+        const lacks = number !== this.shown || wanted.some(photo => photo.slot < 0);
+        if (number !== undefined && lacks && !this.decoding)
+            this.decode(number, wanted);
     }
 
-    async decode(number)
+    // A time step whose files are not there, or are no pictures, is left out: the one before stays.
+    async decode(number, wanted)
     {
         const step = this.steps[number];
         this.decoding = true;
+        await step.loaded; // the files say what is wrong
         try {
-            await step.loaded;
-            this.ready = {number, pictures: await Promise.all(step.pictures.map(decodePicture))};
+            if (step.pictures)
+                this.ready = {number, wanted, pictures: await Promise.all(wanted.map(photo => this.pair(step, photo)))};
         } finally {
             this.decoding = false;
+            step.broken = !this.ready;
+            this.onChange();
         }
-        this.onChange();
+    }
+
+    // What a time step shows of a photograph: picture and depth.
+    pair({pictures}, {number})
+    {
+        return Promise.all(pictures.slice(2 * number, 2 * number + 2).map(decodePicture));
     }
 
     put(renderer)
     {
-        const {number, pictures} = this.ready, step = this.steps[number];
+        const {number, wanted, pictures} = this.ready, step = this.steps[number];
         this.ready = null;
         this.shown = number;
+        const cloud = new Cloud(this.device, step.hull);
         this.cloud?.release();
-        this.cloud = new Cloud(this.device, step.hull);
+        this.cloud = cloud;
         renderer.clouds = [renderer.clouds[0], this.cloud];
-        this.photos.forEach((photo, i) => renderer.photos.replace(photo, step.photos[i], pictures[2 * i], pictures[2 * i + 1]));
-        pictures.forEach(picture => picture.close());
+        renderer.photos.replace(wanted, step.photos, pictures);
     }
 }

@@ -7,7 +7,7 @@ import {forwardOf, poseOf, project, unproject} from "./view.js";
 export function makePhotos(manifest)
 {
     return manifest.photos.map((p, number) =>
-        ({...p, ...poseOf(p.cam_from_world), number, slot: -1, hasSoft: false, lastUse: 0}));
+        ({...p, ...poseOf(p.cam_from_world), number, slot: -1, asked: false, hasSoft: false, lastUse: 0}));
 }
 
 // Of a published photograph.
@@ -124,7 +124,7 @@ export class PhotoStore {
             return [...Array(this.slots).keys()].find(slot => !taken.has(slot));
         }
         const oldest = ready.reduce((a, b) => b.lastUse < a.lastUse ? b : a), {slot} = oldest;
-        Object.assign(oldest, {slot: -1, dropped: true});
+        Object.assign(oldest, {slot: -1, asked: false});
         return slot;
     }
 
@@ -170,12 +170,16 @@ export class PhotoStore {
         }
     }
 
-    // Another time step of the photograph, whose depth is told by `entry` of the manifest. It stays where it is.
-    replace(photo, entry, picture, depth)
+    // A time step of these photographs, no more than there are slots, takes the place of all that is there. pictures: of
+    // each, as add() takes them; entries: of all photographs in the manifest, which tell their depth
+    replace(photos, entries, pictures)
     {
-        photo.depth = entry.depth;
-        if (photo.slot >= 0 || this.ready.length < this.slots)
-            this.add(photo, picture, depth);
+        for (const photo of this.ready)
+            photo.slot = photos.includes(photo) ? photo.slot : -1;
+        photos.forEach((photo, i) => {
+            photo.depth = entries[photo.number].depth;
+            this.add(photo, ...pictures[i]);
+        });
     }
 
     // Mip levels are made in a texture of its own: of the array they would be made for all layers. Those of sRGB are
