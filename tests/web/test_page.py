@@ -220,6 +220,25 @@ class Page(unittest.TestCase):
             self.browser.js("oriel.picture.renderer.photos.slots -= 1")
         self.assertLess(psnr(whole, loading), 50) # where they always have them or never, the two are the same
 
+    def test_depth_may_be_millions_of_times_the_nearest(self):
+        depths = self.browser.js("""
+            const {photos: store, device} = oriel.picture.renderer, gl = device.gl, photo = store.ready[0];
+            const packed = new Uint8ClampedArray(4 * photo.depth.width * photo.depth.height), codes = [1, 20001, 24001, 32767];
+            for (let i = 0; i < packed.length; i += 4)
+                packed.set([codes[i / 4 % 4] >> 8, codes[i / 4 % 4] & 255, 0, 255], i);
+            const image = new ImageData(packed, photo.depth.width, photo.depth.height), kept = store.depth;
+            store.depth = device.texture("R16F", image.width, image.height, {layers: store.slots});
+            store.writeDepth(photo, image, 0);
+            const read = new Float32Array(16);
+            gl.readPixels(0, 0, 4, 1, gl.RGBA, gl.FLOAT, read);
+            device.release(store.depth);
+            store.depth = kept;
+            store.describe(oriel.windowCamera(1), 1);
+            const unit = store.rowData[4 * 8 + 1] / store.ready[0].depth.nearest;
+            return codes.map((code, i) => [read[4 * i] * unit, Math.exp((code - 1) / photo.depth.steps_per_fold)]);""")
+        for stored, said in depths:
+            self.assertAlmostEqual(stored / said, 1, delta=1e-3)
+
     def test_layers_differ(self):
         seen = set()
         for layer in range(6): # the points come last

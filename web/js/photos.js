@@ -87,6 +87,7 @@ export function nearestPhoto(photos, view)
 // --- on the graphics chip ---
 
 const ROW_TEXELS = 9;
+const NEAREST = 2 ** -8; // what a half float keeps a photograph's nearest depth as: files hold up to nine million times it
 
 export class PhotoStore {
     // perFrame: photographs that one frame paints from; radiance: {peak, mu}, of photographs that are radiance;
@@ -215,7 +216,7 @@ export class PhotoStore {
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.fbo);
         gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, this.depth.id, 0, slot);
         this.device.pass(this.programs.depthUnpack, {fbo: this.fbo, width: depth.width, height: depth.height},
-                         {packed_depth: packed, steps_per_fold: photo.depth.steps_per_fold});
+                         {packed_depth: packed, steps_per_fold: photo.depth.steps_per_fold, nearest: NEAREST});
         this.device.release(packed);
     }
 
@@ -244,5 +245,5 @@ function describePhoto(photo, camera)
             width, height, depth.width, depth.height,
             ...photo.gain, 0,
             ...photo.vignette, 4 / (width * width + height * height),
-            photo.number, depth.nearest, 0, 0];
+            photo.number, depth.nearest / NEAREST, 0, 0];
 }

@@ -1,6 +1,6 @@
-// A photograph's depth from its packed file, relative to its nearest; and guesses, negative, in its holes.
+// A photograph's depth from its packed file, and guesses, negative, in its holes.
 uniform sampler2D packed_depth; // high byte red, low byte green
-uniform float steps_per_fold;
+uniform float steps_per_fold, nearest; // nearest: what the nearest depth becomes
 layout(location = 0) out float depth;
 
 float known(ivec2 at)
@@ -10,7 +10,7 @@ float known(ivec2 at)
         return 0.0;
     vec2 bytes = texelFetch(packed_depth, at, 0).rg * 255.0;
     float value = round(bytes.r) * 256.0 + round(bytes.g);
-    return value > 0.0 ? exp((value - 1.0) / steps_per_fold) : 0.0;
+    return value > 0.0 ? nearest * exp((value - 1.0) / steps_per_fold) : 0.0;
 }
 
 #include "proxy/holes.glsl"

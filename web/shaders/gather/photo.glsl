@@ -3,7 +3,7 @@
 uniform sampler2D photo_rows; // a row of 9 texels for each photograph of the frame
 // Mipmapped: sRGB, decoded after the filter, or radiance. a: what soft splats show there, luma, once it is loaded.
 uniform mediump sampler2DArray photo_color;
-uniform sampler2DArray photo_depth; // parts of its nearest depth; < 0: guessed, 0: none
+uniform sampler2DArray photo_depth; // in units of file.y; < 0: guessed, 0: none
 uniform vec4 view_focal;
 uniform float border_px, last_mip, blur_per_radian;
 uniform vec2 slot_size; // of photo_color, pixels
@@ -21,7 +21,7 @@ struct photo {
     vec4 size;         // width, height; of its depth
     vec4 gain;
     vec4 lens;         // relative illumination: factors of r^2, r^4, r^6; w: r^2 per pixel^2
-    vec4 file;         // number among all photographs, nearest depth
+    vec4 file;         // number among all photographs, unit of its depth
 };
 
 photo photo_at(int i)
