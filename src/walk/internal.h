@@ -86,7 +86,7 @@ enum orl_result orl_site_manifest(struct site *site, json_t *points, json_t *pho
 json_t *orl_walk_manifest(const struct orl_scene *scene, const json_t *settings, const char *title,
                           size_t start);
 json_t *orl_walk_photo(const struct orl_photo *photo, const struct orl_camera *camera);
-// Finds the training photograph that is nearest to all others. ORL_ERR_DATA: there is none.
+// Finds the training photograph that is nearest to all others, or to a thousand of them. ORL_ERR_DATA: there is none.
 enum orl_result orl_walk_start(const struct orl_log *log, const struct orl_scene *scene,
                                size_t *start);
 // The title asked for, else that of the settings, else the name of the scene's folder without its

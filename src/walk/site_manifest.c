@@ -10,6 +10,8 @@
 #include "scene/upright.h"
 #include "walk/internal.h"
 
+enum { ASKED = 1000 }; // photographs, about, that the start must be near to
+
 // The method's numeric options by their keys.
 static json_t *options_json(const struct orl_render_params *params)
 {
@@ -34,13 +36,14 @@ enum orl_result orl_walk_start(const struct orl_log *log, const struct orl_scene
                                size_t *start)
 {
     double least = INFINITY;
+    size_t step = 1 + scene->photo_count / ASKED; // of thousands, some tell as much as all, held out or not
     for (size_t i = 0; i < scene->photo_count; i++) {
         double a[3], sum = 0;
         orl_pose_centre(&scene->photos[i].view.cam_from_world, a);
-        for (size_t j = 0; j < scene->photo_count; j++) {
+        for (size_t j = 0; j < scene->photo_count; j += step) {
             double b[3];
             orl_pose_centre(&scene->photos[j].view.cam_from_world, b);
-            if (!scene->photos[j].test)
+            if (!scene->photos[j].test || step > 1)
                 sum += hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
         }
         if (!scene->photos[i].test && sum < least) {

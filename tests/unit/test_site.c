@@ -220,6 +220,30 @@ static void test_degenerate_points(void **state)
     finish(&s);
 }
 
+// A walk begins in the middle of a row of photographs, of which every fifth is held out, however many they are.
+static void check_start(size_t count)
+{
+    const struct orl_log log = {0};
+    struct orl_scene scene = {.photo_count = count, .photos = orl_array(&log, count, sizeof *scene.photos)};
+    size_t start = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct orl_pose *pose = &scene.photos[i].view.cam_from_world;
+        pose->r[0][0] = pose->r[1][1] = pose->r[2][2] = 1;
+        orl_pose_set_centre(pose, (double[3]){(double)i, 0, 0});
+        scene.photos[i].test = i % 5 == 0;
+    }
+    assert_int_equal(orl_walk_start(&log, &scene, &start), ORL_OK);
+    assert_true(start + 5 > count / 2 && start < count / 2 + 5 && start % 5 != 0);
+    free(scene.photos);
+}
+
+static void test_start(void **state)
+{
+    (void)state;
+    check_start(11);
+    check_start(4500); // of five, one is asked: perhaps those alone that are held out
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -228,6 +252,7 @@ int main(void)
         cmocka_unit_test(test_thinned_points_grow),
         cmocka_unit_test(test_no_points_is_an_error),
         cmocka_unit_test(test_degenerate_points),
+        cmocka_unit_test(test_start),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,7 @@ const PITCH_MAX = 1.45;     // radians from the horizon
 const NEAR = 0.35;           // of the way to a point that is left when one goes there
 const UNDERFOOT = 0.3;       // of the eye's height: no more above the ground is the ground
 const ROOM = 0.3;            // of the scene's distance, around photographs, that is free to walk
+const ASKED = 300;           // photographs, at most, that tell how far apart they are
 const HINT_FROM = 0.6;       // share of the way to the border of that
 export const MODES = ["walk", "fly", "orbit"];
 
@@ -40,7 +41,9 @@ export class Navigator {
         this.speed = [0, 0, 0]; // right, up, forward
         this.flight = null;
         this.pivot = null; // of mode "orbit"; null: not chosen yet
-        const apart = photos.map(p => Math.min(...photos.filter(q => q !== p).map(q => distance(p.eye, q.eye))));
+        const some = photos.filter((p, i) => i % Math.ceil(photos.length / ASKED) === 0); // whose neighbours are looked for
+        const apart = some.map(p => photos.reduce((least, q) => q === p ? least : Math.min(least, distance(p.eye, q.eye)),
+                                                  Infinity));
         this.room = Math.max(ROOM * this.distance, 2 * median(apart.filter(Number.isFinite)));
         this.setView(this.home, this.homePhoto);
     }
