@@ -13,25 +13,19 @@ export async function benchmark(walk, seconds = SECONDS)
 {
     const {navigator} = walk, {view, at} = navigator, keys = walk.photos.map(photoView), times = [];
     const loaded = walk.files.bytes;
-    let began = 0, last = 0;
+    let began = 0, last = 0, passed = 0;
     walk.onFrame = () => {
         const now = performance.now();
         times.push(now - last);
         last = now;
     };
-    await new Promise(done => {
-        const step = now => {
-            began = began || now;
-            last = last || now;
-            const passed = clamp((now - began) / (1000 * seconds), 0, 1);
-            navigator.setView(keys.length > 1 ? viewAt(keys, passed) : keys[0]);
-            if (passed < 1)
-                requestAnimationFrame(step);
-            else
-                done();
-        };
-        requestAnimationFrame(step);
-    });
+    while (passed < 1) {
+        const now = await new Promise(requestAnimationFrame);
+        began ||= now;
+        last ||= now;
+        passed = clamp((now - began) / (1000 * seconds), 0, 1);
+        navigator.setView(keys.length > 1 ? viewAt(keys, passed) : keys[0]);
+    }
     walk.onFrame = null;
     navigator.setView(view, at);
     return {

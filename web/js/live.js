@@ -46,7 +46,7 @@ export class LivePicture {
         this.unsaved = null;   // {settings, done: [resolve()], newer} that the server has not answered;
                                // newer: they are not what was sent last
         this.problem = "";     // why no frames come
-        this.site = null;      // {resolve, reject, onProgress} of who waits for the site's data
+        this.site = null;      // {promise, resolve, reject, onProgress} of who waits for the site's data
         this.onRendering = this.onMethod = () => {};
         window.addEventListener("beforeunload", event => {
             if (this.unsaved)
@@ -277,10 +277,9 @@ export class LivePicture {
     // A promise that the published site's data are on the server; onProgress(done, total) until then.
     prepareSite(onProgress)
     {
-        return new Promise((resolve, reject) => {
-            this.site = {resolve, reject, onProgress};
-            this.tell({site: true});
-        });
+        this.site = {...Promise.withResolvers(), onProgress};
+        this.tell({site: true});
+        return this.site.promise;
     }
 
     hearOfSite({done, total, ready, problem})
