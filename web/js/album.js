@@ -32,7 +32,7 @@ export class Album {
     fillNotes(notes)
     {
         const panel = byId("note");
-        panel.setAttribute("aria-label", text.notes.title);
+        panel.ariaLabel = text.notes.title;
         panel.append(...notes.flatMap((note, i) => [
             button(text.notes.mark(i + 1, note.title), () => this.show(this.photoOf(note))),
             ...paragraphs(note.text),

@@ -78,7 +78,7 @@ class Walk {
         window.addEventListener("resize", () => this.resized());
         this.watchPixels();
         NARROW.addEventListener("change", () => this.reveal(SHEETS.find(id => !byId(id).hidden)));
-        this.canvas.setAttribute("aria-label", text.canvas);
+        this.canvas.ariaLabel = text.canvas;
         this.wake();
         if (this.own)
             this.offerHeadset();
@@ -349,7 +349,7 @@ class Walk {
         });
         const files = new Files(this.files.onError, "site/"), manifest = await files.json("manifest.json");
         const canvas = make("canvas", {id: "own", hidden: true});
-        canvas.setAttribute("aria-hidden", "true");
+        canvas.ariaHidden = true;
         this.canvas.after(canvas);
         try {
             return await Walk.open(this, canvas, files, manifest, makePhotos(manifest));

@@ -14,7 +14,7 @@ export class Map2d {
     constructor(navigator, picture, goTo)
     {
         this.canvas = byId("map");
-        this.canvas.setAttribute("aria-label", text.map);
+        this.canvas.ariaLabel = text.map;
         this.canvas.title = text.map;
         Object.assign(this, {navigator, picture, goTo});
         // The start looks upwards on the map.

@@ -17,7 +17,7 @@ export class MethodPanel {
         this.rows = make("div");
         this.problem = make("p", {className: "problem", role: "alert"});
         const element = byId("method"), t = text.methods;
-        element.setAttribute("aria-label", t.title);
+        element.ariaLabel = t.title;
         element.append(make("h2", {textContent: t.title}), make("label", {className: "line"}, t.method, this.select),
                        this.about, this.problem, this.rows,
                        button(t.reset, () => this.ask(this.chosen.name, {})));

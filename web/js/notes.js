@@ -25,7 +25,7 @@ export class Notes {
         this.settings = {...settings, notes: [...(settings.notes || [])]};
         this.layer = byId("marks");
         this.card = byId("note");
-        this.card.setAttribute("aria-label", text.notes.one);
+        this.card.ariaLabel = text.notes.one;
         this.placing = false;
         this.tour = 0; // its timer; 0: none plays
         if (save)
@@ -38,8 +38,8 @@ export class Notes {
     fill()
     {
         this.marks = this.settings.notes.map((note, i) => {
-            const label = text.notes.mark(i + 1, note.title);
-            return button(String(i + 1), () => this.open(i), {className: "mark", title: note.title, label,
+            const ariaLabel = text.notes.mark(i + 1, note.title);
+            return button(String(i + 1), () => this.open(i), {className: "mark", title: note.title, ariaLabel,
                                                               wasBehind: false, hidden: true}); // until update()
         });
         this.layer.replaceChildren(...this.marks);
@@ -59,7 +59,7 @@ export class Notes {
             mark.style.transform = `translate(${at[0]}px, ${at[1]}px) translate(-50%, -50%)`;
             const behind = this.seen(note.position) === false;
             if (mark.classList.toggle("behind", behind) !== mark.wasBehind)
-                mark.setAttribute("aria-label", (behind ? text.notes.behind : text.notes.mark)(i + 1, note.title));
+                mark.ariaLabel = (behind ? text.notes.behind : text.notes.mark)(i + 1, note.title);
             mark.wasBehind = behind;
         });
     }
@@ -162,7 +162,7 @@ export class Notes {
         this.title = make("input", {type: "text", maxLength: 200});
         this.words = make("textarea", {rows: 3, maxLength: 2000});
         this.said = make("p", {role: "status"});
-        maker.setAttribute("aria-label", t.title);
+        maker.ariaLabel = t.title;
         maker.append(
             make("h2", {textContent: t.title}), make("label", {className: "line"}, t.name, this.title),
             make("label", {className: "line"}, t.words, this.words),
@@ -211,7 +211,7 @@ export class Notes {
     row(note, i)
     {
         const remove = button("✕", () => this.change({notes: this.settings.notes.filter(n => n !== note)}),
-                              {label: text.notes.remove(note.title)});
+                              {ariaLabel: text.notes.remove(note.title)});
         return make("li", {className: "row"}, button(note.title, () => this.open(i)), remove);
     }
 

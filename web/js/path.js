@@ -16,11 +16,11 @@ export class PathEditor {
         Object.assign(this, {navigator, onTour, plays: false});
         this.keys = [];         // views, some with seconds to the next one
         this.element = byId("path");
-        this.element.setAttribute("aria-label", text.path.title);
+        this.element.ariaLabel = text.path.title;
         this.list = make("ol");
         this.seconds = make("input", {type: "number", min: 0.5, max: 3600, step: 0.5, value: 0,
                                       onchange: () => this.setDuration(Number(this.seconds.value))});
-        this.scrubber = make("input", {type: "range", min: 0, max: 1, step: 0.001, value: 0, label: text.path.scrub,
+        this.scrubber = make("input", {type: "range", min: 0, max: 1, step: 0.001, value: 0, ariaLabel: text.path.scrub,
                                        oninput: () => this.show(Number(this.scrubber.value))});
         this.playing = button(text.path.play, () => this.play());
         this.said = make("p", {role: "status"});
@@ -83,9 +83,9 @@ export class PathEditor {
 
     addRendering(render)
     {
-        this.format = make("select", {label: text.path.format},
+        this.format = make("select", {ariaLabel: text.path.format},
                            ...["mp4", "png", "exr"].map(f => make("option", {textContent: f})));
-        this.bar = make("progress", {max: 1, value: 0, hidden: true, label: text.path.rendering});
+        this.bar = make("progress", {max: 1, value: 0, hidden: true, ariaLabel: text.path.rendering});
         this.start = button(text.path.render,
                             () => render(orielPath(this.keys, this.duration), this.format.value));
         this.saving.push(this.start);
@@ -129,7 +129,7 @@ export class PathEditor {
     {
         const t = text.path, last = i === this.keys.length - 1;
         const number = (label, more, edit) => make("input", {
-            type: "number", label, title: label, ...more,
+            type: "number", ariaLabel: label, title: label, ...more,
             onchange: event => this.change(keys => keys[i] = edit(Number(event.target.value)))});
         const degrees = {min: 5, max: 150, step: 1, value: viewToKey(key).fov_y_deg.toFixed(0)};
         const fov = number(t.fov(i + 1), degrees, value =>
@@ -137,7 +137,7 @@ export class PathEditor {
         const times = {min: 0.1, max: 3600, step: 0.1, value: Number(secondsFrom(key).toFixed(2))};
         const seconds = number(t.speed(i + 1), {...times, className: "seconds", disabled: last}, value =>
             ({...key, seconds: clamp(value || 0, 0.1, 3600)}));
-        const small = (sign, label, run, disabled = false) => button(sign, run, {label, title: label, disabled});
+        const small = (sign, label, run, disabled = false) => button(sign, run, {ariaLabel: label, title: label, disabled});
         const swap = by => () => this.change(keys => [keys[i], keys[i + by]] = [keys[i + by], keys[i]]);
         return make("li", {className: "row"},
                     button(t.key(i + 1), () => this.navigator.flyTo(this.keys[i])), fov, seconds,

@@ -13,7 +13,7 @@ export class Ruler {
         this.line = byId("line");
         this.said = make("p", {id: "length", role: "status"});
         this.element = byId("ruler");
-        this.element.setAttribute("aria-label", text.actions.ruler);
+        this.element.ariaLabel = text.actions.ruler;
         this.element.append(make("h2", {textContent: text.actions.ruler}), this.said,
                             button(text.ruler.again, () => this.begin()), ...(save ? [this.teaching()] : []));
         this.begin();

@@ -5,13 +5,10 @@ import {frameHeight, photoView, quartersOf} from "./view.js";
 
 export const byId = id => document.getElementById(id);
 
-// label, role: what assistive technology is told. Properties such as onclick are handlers.
-export function make(tag, {label, role, ...properties} = {}, ...children)
+// properties: such as ariaLabel, and handlers such as onclick
+export function make(tag, properties = {}, ...children)
 {
     const element = Object.assign(document.createElement(tag), properties);
-    for (const [name, value] of [["aria-label", label], ["role", role]])
-        if (value)
-            element.setAttribute(name, value);
     element.append(...children);
     return element;
 }
@@ -37,7 +34,7 @@ function icon(name)
     const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     const path = document.createElementNS("http://www.w3.org/2000/svg", "path");
     svg.setAttribute("viewBox", "0 0 24 24");
-    svg.setAttribute("aria-hidden", "true");
+    svg.ariaHidden = true;
     path.setAttribute("d", icons[name]);
     svg.append(path);
     return svg;
@@ -50,7 +47,7 @@ export class Tools {
     constructor(actions, wake)
     {
         const bar = byId("tools");
-        bar.setAttribute("aria-label", text.toolbar);
+        bar.ariaLabel = text.toolbar;
         Object.assign(this, {wake, toggles: []});
         for (const [id, action] of Object.entries(actions))
             this.add(id, action);
@@ -63,7 +60,7 @@ export class Tools {
             action.run();
             this.wake();
         };
-        const button = make("button", {type: "button", title: label, label, id: `tool-${id}`, onclick}, icon(id));
+        const button = make("button", {type: "button", title: label, ariaLabel: label, id: `tool-${id}`, onclick}, icon(id));
         byId("tools").append(button);
         if (action.pressed)
             this.toggles.push([button, action.pressed]);
@@ -81,7 +78,7 @@ export class Tools {
     update()
     {
         for (const [button, pressed] of this.toggles)
-            button.setAttribute("aria-pressed", String(pressed()));
+            button.ariaPressed = pressed();
     }
 }
 
@@ -110,7 +107,7 @@ export class Panel {
         const curve = this.curve = make("select", {onchange: () => onTone(curve.value)},
                                         ...tones.map(t => make("option", {textContent: t.name, title: t.description})));
         this.details = make("div");
-        this.element.setAttribute("aria-label", text.actions.panel);
+        this.element.ariaLabel = text.actions.panel;
         this.element.append(this.layers,
                             make("label", {className: "line"}, text.exposure, stops, exposure),
                             ...(tones.length ? [make("label", {className: "line"}, text.tone, curve)] : []),
@@ -170,11 +167,11 @@ export class Thumbs {
     constructor(photos, files, goTo)
     {
         this.element = byId("thumbs");
-        this.element.setAttribute("aria-label", text.photographs);
+        this.element.ariaLabel = text.photographs;
         this.buttons = photos.map(photo => {
             const image = make("img", {alt: "", loading: "lazy"});
             const button = make("button", {type: "button", title: photo.name, onclick: () => goTo(photo),
-                                           label: text.thumb(photo.number + 1, photo.name)}, image);
+                                           ariaLabel: text.thumb(photo.number + 1, photo.name)}, image);
             button.style.aspectRatio = photoView(photo).frame.aspect;
             return {button, image, photo};
         });
@@ -194,7 +191,7 @@ export class Thumbs {
         if (photo === this.current)
             return;
         for (const [i, b] of this.buttons.entries())
-            b.button.setAttribute("aria-current", String(photo !== null && i === photo.number));
+            b.button.ariaCurrent = photo !== null && i === photo.number;
         this.current = photo;
         if (photo && !this.element.hidden) {
             // The strip alone, not what it stands in.
@@ -237,7 +234,7 @@ export class Compare {
         this.element = byId("compare");
         this.image = this.element.querySelector("img");
         const slider = this.element.querySelector("input");
-        slider.setAttribute("aria-label", text.compareSlider);
+        slider.ariaLabel = text.compareSlider;
         slider.addEventListener("input", () => this.element.style.setProperty("--share", `${slider.value}vw`));
         byId("left-side").textContent = text.sides.own;
         if (radiance) {
@@ -286,7 +283,7 @@ export function buildHelp(has)
                                   : fingers ? `${keys}, ${text.or} ${fingers}` : keys;
         list.append(make("dt", {textContent: ways}), make("dd", {textContent: what}));
     }
-    dialog.setAttribute("aria-label", text.helpTitle);
+    dialog.ariaLabel = text.helpTitle;
     dialog.append(title, list, make("p", {textContent: text.helpShare}), button(text.close, () => dialog.close()));
     return {
         // The heading takes the focus: the button would scroll the dialog to its end. Browsers refuse
@@ -337,7 +334,7 @@ export function showProgress(share)
 {
     const bar = byId("progress");
     bar.classList.toggle("done", share >= 1);
-    bar.setAttribute("aria-valuenow", Math.round(100 * share));
-    bar.setAttribute("aria-label", share < 1 ? text.loadingShare(share) : text.loading);
+    bar.ariaValueNow = Math.round(100 * share);
+    bar.ariaLabel = share < 1 ? text.loadingShare(share) : text.loading;
     bar.firstElementChild.style.width = `${100 * share}%`;
 }
