@@ -71,9 +71,8 @@ static bool read_picks(const json_t *root, struct walk_request *request)
     return true;
 }
 
-bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request)
+bool orl_walk_request_read(json_t *root, struct walk_request *request)
 {
-    json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
     json_int_t number = -1, quality = 0;
     const char *layer = "";
     int index = 0;
@@ -90,10 +89,8 @@ bool orl_walk_request_read(const char *text, size_t size, struct walk_request *r
                                  pair[1] >= 0 && pair[0] <= INT32_MAX && pair[1] <= INT32_MAX);
     request->time_step = timed ? (int)pair[0] : 0;
     request->expected = timed ? (int)pair[1] : 0;
-    valid = valid && timed && index < WALK_LAYERS && read_view(root, &request->view) &&
-            read_picks(root, request) && orl_walk_tone_read(root, &request->tone);
-    json_decref(root);
-    return valid;
+    return valid && timed && index < WALK_LAYERS && read_view(root, &request->view) &&
+           read_picks(root, request) && orl_walk_tone_read(root, &request->tone);
 }
 
 // --- answers ---

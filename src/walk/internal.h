@@ -138,7 +138,7 @@ struct walk_request {
     int picks[WALK_PICKS_MAX][2]; // pixels whose depth it asks for
 };
 // Reads a request from a message. Returns false for a message that the server does not answer.
-bool orl_walk_request_read(const char *text, size_t size, struct walk_request *request);
+bool orl_walk_request_read(json_t *message, struct walk_request *request);
 
 // Reads "ev" and "tone" of a message, both optional. Returns false if they are not valid.
 bool orl_walk_tone_read(const json_t *message, struct orl_tone_params *tone);

@@ -285,10 +285,8 @@ static bool take_site_request(const struct server *server, struct session *sessi
 
 // A message about something else than a frame: {"save": settings}, {"render": path}, {"method":
 // name, "set": options} or {"site": true}. Returns false for a message that is none of these.
-static bool take_command(struct server *server, struct session *session)
+static bool take_command(struct server *server, struct session *session, json_t *root)
 {
-    json_t *root = json_loadb(session->message.data, session->message.size,
-                              JSON_REJECT_DUPLICATES, NULL);
     json_t *settings = json_object_get(root, "save");
     bool known = settings && server->content.edits;
     if (json_is_true(json_object_get(root, "site"))) {
@@ -303,7 +301,6 @@ static bool take_command(struct server *server, struct session *session)
                       json_pack("{s:b, s:s}", "saved", result == ORL_OK, "reason",
                                 result == ORL_OK ? "" : orl_result_message(result))) == ORL_OK;
     }
-    json_decref(root);
     return known;
 }
 
@@ -320,10 +317,10 @@ static int take_message(struct server *server, struct session *session, const ch
         return -1;
     if (!lws_is_final_fragment(wsi) || lws_remaining_packet_payload(wsi) > 0)
         return 0;
+    json_t *root = json_loadb(session->message.data, session->message.size, JSON_REJECT_DUPLICATES, NULL);
     struct walk_request request;
-    bool asks = orl_walk_request_read(session->message.data, session->message.size,
-                                      &request);
-    bool valid = asks || take_command(server, session);
+    bool asks = orl_walk_request_read(root, &request), valid = asks || take_command(server, session, root);
+    json_decref(root);
     session->message.size = 0;
     if (!valid)
         return close_for(wsi, LWS_CLOSE_STATUS_INVALID_PAYLOAD);

@@ -94,15 +94,13 @@ static void use_message(struct content *content, struct orl_choice *choice, cons
                         size_t size)
 {
     struct walk_request request;
-    if (orl_walk_request_read(text, size, &request)) {
-        use_request(&request);
-        return;
-    }
     if (size && *text == '/')
         use_path(content, text, size);
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
     json_t *settings = json_object_get(root, "save");
-    if (orl_walk_rendering_asked(root))
+    if (orl_walk_request_read(root, &request))
+        use_request(&request);
+    else if (orl_walk_rendering_asked(root))
         use_rendering(content->scene, root);
     else if (orl_walk_choice_asked(root))
         use_choice(content->scene, root, choice);
