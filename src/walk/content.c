@@ -159,20 +159,12 @@ void orl_content_finish(struct content *content)
 
 // --- files ---
 
-static struct content_file text_file(const char *type, const char *text)
+static enum orl_result copy(const struct content *content, const char *type, const void *data, size_t size,
+                            struct content_file *file)
 {
-    return (struct content_file){.type = type, .data = (const uint8_t *)text,
-                                 .size = strlen(text)};
-}
-
-// A text that may change while the file is being sent.
-static enum orl_result copy_text(const struct content *content, const char *type, const char *text,
-                                 struct content_file *file)
-{
-    char *copy = orl_strdup(content->log, text);
-    ORL_TRY_MEMORY(copy);
-    *file = text_file(type, copy);
-    file->owned = (uint8_t *)copy;
+    *file = (struct content_file){.type = type, .data = orl_array(content->log, size, 1), .size = size};
+    ORL_TRY_MEMORY(file->data);
+    memcpy(file->data, data, size);
     return ORL_OK;
 }
 
@@ -188,9 +180,8 @@ static enum orl_result make_picture(const struct content *content, size_t number
     if (shrinks)
         result = orl_bridge_resize(log, &image, (image.width * side + longer - 1) / longer,
                                    (image.height * side + longer - 1) / longer, &small);
-    ORL_THEN(result, orl_jpeg_encode(log, shrinks ? &small : &image, quality, &file->owned, &file->size));
+    ORL_THEN(result, orl_jpeg_encode(log, shrinks ? &small : &image, quality, &file->data, &file->size));
     file->type = "image/jpeg";
-    file->data = file->owned;
     orl_image_finish(&image);
     orl_image_finish(&small);
     return result;
@@ -211,8 +202,7 @@ static enum orl_result make_map(const struct content *content, struct content_fi
         memcpy(map[i].position, points->position[i * step], sizeof map[i].position);
         memcpy(map[i].color, points->color[i * step], sizeof points->color[0]);
     }
-    *file = (struct content_file){.type = "application/octet-stream", .data = (const uint8_t *)map,
-                                  .size = count * sizeof *map, .owned = (uint8_t *)map};
+    *file = (struct content_file){"application/octet-stream", (uint8_t *)map, count * sizeof *map};
     return map ? ORL_OK : ORL_ERR_MEMORY;
 }
 
@@ -238,11 +228,8 @@ static enum orl_result find_in_site(const struct content *content, const char *p
                                     struct content_file *file)
 {
     for (size_t i = 0; i < content->site_paths.count; i++)
-        if (strcmp(content->site_paths.items[i], path) == 0) {
-            *file = (struct content_file){.type = type_of(path), .data = content->site[i].data,
-                                          .size = content->site[i].size};
-            return ORL_OK;
-        }
+        if (strcmp(content->site_paths.items[i], path) == 0)
+            return copy(content, type_of(path), content->site[i].data, content->site[i].size, file);
     return ORL_ERR_NOT_FOUND;
 }
 
@@ -271,9 +258,9 @@ enum orl_result orl_content_find(const struct content *content, const char *path
     size_t number;
     *file = (struct content_file){0};
     if (is_index(path))
-        return copy_text(content, "text/html", content->index, file);
+        return copy(content, "text/html", content->index, strlen(content->index), file);
     if (strcmp(path, "/manifest.json") == 0)
-        return copy_text(content, "application/json", content->manifest, file);
+        return copy(content, "application/json", content->manifest, strlen(content->manifest), file);
     if (strncmp(path, site_folder, strlen(site_folder)) == 0)
         return find_in_site(content, path + strlen(site_folder), file);
     if (strcmp(path, "/map.bin") == 0)
@@ -283,8 +270,5 @@ enum orl_result orl_content_find(const struct content *content, const char *path
     if (photo_number(content, path, "/photos/", &number))
         return make_picture(content, number, PICTURE_SIDE, PICTURE_QUALITY, file);
     const char *text = page_text(path);
-    if (!text)
-        return ORL_ERR_NOT_FOUND;
-    *file = text_file(type_of(path), text);
-    return ORL_OK;
+    return text ? copy(content, type_of(path), text, strlen(text), file) : ORL_ERR_NOT_FOUND;
 }

@@ -31,10 +31,9 @@ struct content {
 };
 
 struct content_file {
-    const char *type;      // MIME
-    const uint8_t *data;
+    const char *type; // MIME
+    uint8_t *data;    // released with free(): what it is a copy of may change while it is sent
     size_t size;
-    uint8_t *owned;        // memory that the caller releases with free(); may be NULL
 };
 
 // title: NULL to take that of the settings. edits: clients may change the settings and choose

@@ -118,7 +118,7 @@ static int refuse(struct lws *wsi, unsigned status)
 
 static void forget_file(struct session *session)
 {
-    free(session->file.owned);
+    free(session->file.data);
     session->file = (struct content_file){0};
 }
 

@@ -82,7 +82,7 @@ static void use_path(const struct content *content, const char *text, size_t siz
     if (orl_content_find(content, path, &file) == ORL_OK) {
         fuzz_require(file.type && (file.data || !file.size), "a file has a type and its bytes");
         fuzz_require(strcmp(path, "/map.bin") != 0 || file.size == 32, "the map has both points");
-        free(file.owned);
+        free(file.data);
     }
     fuzz_require(orl_dir_remove(NULL, fuzz_path("images")) == ORL_OK, "files can be removed");
     free(path);
