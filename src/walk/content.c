@@ -12,7 +12,6 @@
 #include "walk/choices.h"
 #include "walk/internal.h"
 #include "walk/publish.h"
-#include "walk/web_table.h"
 
 enum { MAP_POINTS = 16000 };
 static const char site_folder[] = "/site/"; // where clients find the published site's data
@@ -238,18 +237,9 @@ static bool is_index(const char *path)
     return strcmp(path, "/") == 0 || strcmp(path, "/index.html") == 0;
 }
 
-// The text of one of the page's other files; NULL: it has no such file.
-static const char *page_text(const char *path)
-{
-    const struct orl_web_file *f = orl_web_table;
-    while (f->name && strcmp(f->name, path + 1) != 0)
-        f++;
-    return f->name ? f->text : NULL;
-}
-
 bool orl_content_is_page(const char *path)
 {
-    return is_index(path) || page_text(path);
+    return is_index(path) || orl_walk_page_file(path + 1);
 }
 
 enum orl_result orl_content_find(const struct content *content, const char *path,
@@ -269,6 +259,6 @@ enum orl_result orl_content_find(const struct content *content, const char *path
         return make_picture(content, number, THUMB_SIDE, THUMB_QUALITY, file);
     if (photo_number(content, path, "/photos/", &number))
         return make_picture(content, number, PICTURE_SIDE, PICTURE_QUALITY, file);
-    const char *text = page_text(path);
+    const char *text = orl_walk_page_file(path + 1);
     return text ? copy(content, type_of(path), text, strlen(text), file) : ORL_ERR_NOT_FOUND;
 }

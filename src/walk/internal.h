@@ -96,8 +96,10 @@ char *orl_walk_title(const struct orl_log *log, const struct orl_scene *scene, c
 
 // --- page (page.c) ---
 
-// Writes the page and its modules. Their bytes are loaded before the page shows anything.
+// Writes the page, its modules and its shaders.
 enum orl_result orl_site_page(struct site *site);
+// The text of a file of web/ by its path in there; NULL: there is none.
+const char *orl_walk_page_file(const char *name);
 // The text of index.html; the caller releases it with free(). NULL, logged: an error. poster: the
 // picture's file, "": none.
 char *orl_walk_index(const struct orl_log *log, const char *title, const char *poster);

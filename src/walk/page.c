@@ -38,13 +38,12 @@ struct page {
     enum orl_result result; // the first failure
 };
 
-// The text of a file of the page. All names are literals; a file that is not embedded is empty.
-static const char *web_file(const char *name)
+const char *orl_walk_page_file(const char *name)
 {
-    for (const struct orl_web_file *f = orl_web_table; f->name; f++)
-        if (strcmp(f->name, name) == 0)
-            return f->text;
-    return "";
+    const struct orl_web_file *f = orl_web_table;
+    while (f->name && strcmp(f->name, name) != 0)
+        f++;
+    return f->text; // the table ends with zeros
 }
 
 static void put_base64(struct page *page, const uint8_t *data, size_t size)
@@ -68,23 +67,9 @@ static void put_title(struct page *page)
     }
 }
 
-static void put_icon(struct page *page)
-{
-    fputs(page->site ? "data:," : "icon.svg", page->out);
-}
-
-// A page that holds all files finds the poster among them, so it needs no address for it.
-static void put_poster(struct page *page)
-{
-    fputs(page->poster, page->out);
-}
-
 static void put_style(struct page *page)
 {
-    if (page->site)
-        fprintf(page->out, "<style>%s</style>", web_file("style.css"));
-    else
-        fputs("<link rel=\"stylesheet\" href=\"style.css\">", page->out);
+    fprintf(page->out, "<style>%s</style>", orl_walk_page_file("style.css"));
 }
 
 // What is needed is found one after the other, unless the page names all of it.
@@ -113,14 +98,10 @@ static void put_module(struct page *page, const char *module)
     free(plain.data);
 }
 
-// Every module under the name by which others import it, or where it is.
+// Every module under the name by which others import it.
 static void put_modules(struct page *page)
 {
     const char *before = "";
-    if (!page->site) {
-        put_scripts(page);
-        return;
-    }
     fputs("<script type=\"importmap\">{\"imports\": {", page->out);
     for (const struct orl_web_file *f = orl_web_table; f->name; f++) {
         if (strncmp(f->name, "js/", 3) != 0)
@@ -147,8 +128,6 @@ static void put_file(struct page *page, const char *path, const char *before)
 static void put_files(struct page *page)
 {
     struct orl_names paths = {0};
-    if (!page->site)
-        return;
     fputs("<script type=\"application/json\" id=\"files\">{", page->out);
     ORL_THEN(page->result, orl_site_files(page->log, page->site->dir, true, &paths));
     for (size_t i = 0; i < paths.count && page->result == ORL_OK; i++)
@@ -157,17 +136,26 @@ static void put_files(struct page *page)
     orl_names_finish(&paths);
 }
 
-// Puts what stands in the place of {{key}}.
+// Puts what stands in the place of {{key}}. A page that holds all files finds the poster among them, so it needs no
+// address for it.
 static void put_value(struct page *page, const char *key, size_t length)
 {
-    static const struct {
-        const char *key;
-        void (*put)(struct page *page);
-    } values[] = {{"title", put_title}, {"icon", put_icon}, {"poster", put_poster}, {"style", put_style},
-                  {"modules", put_modules}, {"files", put_files}};
+    const bool holds = page->site;
+    const struct {
+        const char *key, *text;
+        void (*put)(struct page *page); // where there is no text
+    } values[] = {{"title", NULL, put_title},
+                  {"icon", holds ? "data:," : "icon.svg", NULL},
+                  {"poster", page->poster, NULL},
+                  {"style", holds ? NULL : "<link rel=\"stylesheet\" href=\"style.css\">", put_style},
+                  {"modules", NULL, holds ? put_modules : put_scripts},
+                  {"files", holds ? NULL : "", put_files}};
     for (size_t i = 0; i < ORL_COUNT(values); i++)
         if (strlen(values[i].key) == length && strncmp(values[i].key, key, length) == 0) {
-            values[i].put(page);
+            if (values[i].text)
+                fputs(values[i].text, page->out);
+            else
+                values[i].put(page);
             return;
         }
     page->result = orl_fail(page->log, ORL_ERR_FORMAT, "%s: {{%.*s}} is not known", index_name, (int)length, key);
@@ -177,7 +165,7 @@ static void put_value(struct page *page, const char *key, size_t length)
 static char *make_page(struct page *page, size_t *size)
 {
     char *text = NULL;
-    const char *rest = web_file(index_name);
+    const char *rest = orl_walk_page_file(index_name);
     page->out = open_memstream(&text, size);
     for (const char *open; page->out && page->result == ORL_OK && (open = strstr(rest, "{{")) != NULL;) {
         const char *close = strstr(open, "}}");
@@ -201,17 +189,10 @@ char *orl_walk_index(const struct orl_log *log, const char *title, const char *p
     return make_page(&(struct page){.log = log, .title = title, .poster = poster}, &size);
 }
 
-// Writes a file that is loaded before the page shows anything.
-static enum orl_result write_first(struct site *site, const char *name, const char *text)
-{
-    site->report->first_bytes += strlen(text);
-    return orl_site_write(site, name, text, strlen(text));
-}
-
 static enum orl_result write_index(struct site *site)
 {
     char *page = orl_walk_index(site->log, site->params->title, "poster.jpg");
-    enum orl_result result = page ? write_first(site, index_name, page) : ORL_ERR_MEMORY;
+    enum orl_result result = page ? orl_site_write(site, index_name, page, strlen(page)) : ORL_ERR_MEMORY;
     free(page);
     return result;
 }
@@ -235,7 +216,7 @@ static enum orl_result write_shaders(struct site *site)
             result = orl_fail(site->log, ORL_ERR_NOT_FOUND, "%s: the page needs this shader", *name);
     }
     char *text = json_dumps(shaders, JSON_COMPACT);
-    ORL_THEN(result, text ? write_first(site, "shaders.json", text) : ORL_ERR_MEMORY);
+    ORL_THEN(result, text ? orl_site_write(site, "shaders.json", text, strlen(text)) : ORL_ERR_MEMORY);
     free(text);
     json_decref(shaders);
     return result;
@@ -246,7 +227,7 @@ enum orl_result orl_site_page(struct site *site)
     ORL_TRY(write_index(site));
     for (const struct orl_web_file *f = orl_web_table; f->name; f++)
         if (strcmp(f->name, index_name) != 0 && strncmp(f->name, own_shaders, strlen(own_shaders)) != 0)
-            ORL_TRY(write_first(site, f->name, f->text));
+            ORL_TRY(orl_site_write(site, f->name, f->text, strlen(f->text)));
     return write_shaders(site);
 }
 
@@ -263,7 +244,7 @@ enum orl_result orl_site_files(const struct orl_log *log, const char *dir, bool 
         path += *path == '/';
         if (entry->fts_errno)
             result = orl_fail(log, ORL_ERR_IO, "%s: %s", entry->fts_path, strerror(entry->fts_errno));
-        else if (entry->fts_info == FTS_F && (!data || !*web_file(path))) // data is what the page requests by name
+        else if (entry->fts_info == FTS_F && (!data || !orl_walk_page_file(path))) // data is what the page requests by name
             result = orl_names_add(log, paths, path);
     }
     if (result == ORL_OK && errno != 0) // of fts_read

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/new_dir.h"
+#include "core/text.h"
 #include "scene/info.h"
 #include "walk/internal.h"
 
@@ -67,20 +68,22 @@ static enum orl_result make_folders(struct site *site)
 
 // --- the parts of the site ---
 
-static size_t all_bytes(const struct site *site)
+static void count_bytes(const struct site *site)
 {
+    static const char *const first[] = {"shaders.json", "manifest.json", "poster.jpg", "points/coarse.bin", NULL};
     struct orl_names paths = {0};
-    size_t all = 0;
     if (orl_site_files(site->log, site->dir, false, &paths) == ORL_OK)
-        for (size_t i = 0; i < paths.count; i++)
-            all += bytes_of(site, paths.items[i]);
+        for (size_t i = 0; i < paths.count; i++) {
+            size_t bytes = bytes_of(site, paths.items[i]);
+            site->report->bytes += bytes;
+            if (orl_walk_page_file(paths.items[i]) || orl_text_is_one_of(paths.items[i], first))
+                site->report->first_bytes += bytes;
+        }
     orl_names_finish(&paths);
-    return all;
 }
 
 static enum orl_result write_site(struct site *site)
 {
-    static const char *const first[] = {"points/coarse.bin", "poster.jpg", "manifest.json"}; // loaded after the page
     json_t *points = NULL, *photos = NULL, *steps = NULL, *soft = NULL;
     enum orl_result result = orl_walk_start(site->log, site->scene, &site->start);
     ORL_THEN(result, make_folders(site));
@@ -92,8 +95,6 @@ static enum orl_result write_site(struct site *site)
     if (result == ORL_OK && site->carves)
         result = orl_site_steps(site, &steps);
     ORL_THEN(result, orl_site_manifest(site, points, photos, steps, soft));
-    for (size_t i = 0; result == ORL_OK && i < ORL_COUNT(first); i++)
-        site->report->first_bytes += bytes_of(site, first[i]);
     json_decref(points);
     json_decref(photos);
     json_decref(steps);
@@ -144,7 +145,7 @@ enum orl_result orl_publish(struct orl_gpu *gpu, struct orl_scene *scene,
     ORL_THEN(result, title ? make_renderer(&site) : ORL_ERR_MEMORY);
     ORL_THEN(result, write_site(&site));
     if (result == ORL_OK)
-        report->bytes = all_bytes(&site);
+        count_bytes(&site);
     if (result == ORL_OK)
         result = params.single_file ? orl_site_pack(&site, params.out)
                                     : replace_site(&site, &dir);
