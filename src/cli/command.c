@@ -40,6 +40,7 @@ int command_status(enum orl_result result)
     case ORL_ERR_FORMAT:
     case ORL_ERR_DATA:
     case ORL_ERR_NOT_FOUND:
+    case ORL_ERR_UNSUPPORTED:
         return 2;
     case ORL_ERR_CANCELLED:
         return 130;

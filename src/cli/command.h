@@ -84,7 +84,7 @@ const struct orl_option *no_option_rows(void);
 // NULL: there is no such command, hidden or not.
 const struct command *command_find(const char *name, bool hidden);
 // Parses the arguments, runs the command and returns the exit status: 0 only if the whole job was
-// done, 2 for wrong usage or unusable input, 130 when cancelled, 1 for other errors.
+// done, 2 for wrong usage or input that is wrong or not supported, 130 when cancelled, 1 for other errors.
 int command_main(const struct command *command, int argc, const char *const *argv);
 int command_status(enum orl_result result);
 

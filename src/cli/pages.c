@@ -73,8 +73,8 @@ void page_man(FILE *out)
     for (size_t i = 0; commands[i]; i++)
         print_man_command(out, commands[i]);
     fprintf(out, ".SH EXIT STATUS\n"
-                 "0 if the whole job was done, 2 if an argument or an input file is wrong, 130 after "
-                 "an interruption, 1 after any other failure.\n"
+                 "0 if the whole job was done, 2 if an argument or an input file is wrong or not "
+                 "supported, 130 after an interruption, 1 after any other failure.\n"
                  ".SH ENVIRONMENT\n.TP\n.B ORIEL_COLMAP\nnames the program colmap when it is not on "
                  "PATH.\n.SH SEE ALSO\n.BR colmap (1),\nthe guide in the package's documentation\n");
 }

@@ -27,7 +27,7 @@ if command -v compare >/dev/null; then
 fi
 runs 0 "$oriel" info made --json
 [ "$(grep -o '"points": [0-9]*' stdout.txt | head -n 1)" = "$points" ] || fail "not $points"
-runs 1 "$oriel" trim made --out trimmed
+runs 2 "$oriel" trim made --out trimmed
 grep -q "points.lod: remove it" stderr.txt || fail "trim does not say what to do"
 [ -e trimmed ] && fail "trim left a folder"
 # A site takes a coarser level.
