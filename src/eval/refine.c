@@ -47,7 +47,7 @@ static const size_t STATE_MAX = (size_t)1 << 36, ROW = ORL_SOFT_VALUES * sizeof(
 // Where a run goes on after it was cut off, in a file for the same machine. Zero-initialised, it is the beginning.
 // The file holds it as it is, then the model's splats and, once a step of this part has been made, its moments.
 struct state {
-    uint64_t key;    // hash of all that the splats depend on: photographs, settings, the splats to begin with
+    uint64_t key;    // hash of all that the result depends on: photographs, settings, method and options, the splats to begin with
     uint64_t splats; // of the model
     int32_t part;    // of the descent: 0; 1: the shares have been found
     struct orl_soft_descent_report at; // in this part
@@ -381,6 +381,20 @@ static enum orl_result begin(struct refine *r)
     return result;
 }
 
+// Adds the method and its options to the key of the state, but for the shares of splats, which are found, not asked for: a
+// run that was cut off at its very end may have kept them already.
+static void add_choice(struct refine *r)
+{
+    struct orl_choice choice = r->params->choice;
+    choice.params.soft = choice.params.soft_mix = 0;
+    add_key(r, choice.method->name, strlen(choice.method->name));
+    for (const struct orl_option *o = orl_render_options(); o->name; o++) {
+        char value[ORL_OPTION_TEXT] = "";
+        orl_option_print(o, &choice.params, value);
+        add_key(r, value, sizeof value);
+    }
+}
+
 // Begins, or goes on where an earlier run was cut off.
 static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
 {
@@ -393,6 +407,7 @@ static enum orl_result start(struct refine *r, struct orl_gpu *gpu)
     add_key(r, r->model.splats, r->model.count * sizeof *r->model.splats);
     const double settings[] = {r->steps, p->budget_s, p->seed, (double)p->max_vram_bytes};
     add_key(r, settings, sizeof settings);
+    add_choice(r);
     ORL_TRY(read_state(r));
     if (r->state.splats > 0) {
         orl_logf(r->log, ORL_LOG_INFO, "refine: goes on after %d steps", report->steps + r->state.at.steps);

@@ -54,6 +54,12 @@ killed "${refine[@]}" || fail "not killed"
 runs 0 "${refine[@]}" --seed 2
 grep -q "refine.state: .* other settings" stderr.txt || fail "goes on with another seed"
 cmp -s first.ply ws/soft.ply && fail "the seed does not matter"
+killed "${refine[@]}" || fail "not killed"
+cp ws/scene.json scene.json
+jq '.tuned.oriel.settings.sharpness = 3' scene.json >ws/scene.json
+runs 0 "${refine[@]}"
+grep -q "refine.state: .* other settings" stderr.txt || fail "goes on with other options of the method"
+mv scene.json ws/scene.json
 runs 1 "$oriel" refine ws --max-vram 1
 grep -q "refine: 1 MiB of device memory are not enough for photographs of 96x64: the least is 7\." stderr.txt || fail "too little memory"
 
