@@ -21,6 +21,8 @@
 #define ORL_SOFT_TILE 4
 // Tiles of a work group.
 #define ORL_SOFT_TILE_GROUP 64
+// Splats or tiles in a row of work groups, of which a device may allow no more than 65,535.
+#define ORL_SOFT_ROW (1 << 20)
 
 #if defined(__STDC_VERSION__) || defined(BLOCK_SOFT)
 ORL_BLOCK(soft_block)

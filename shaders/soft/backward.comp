@@ -22,7 +22,7 @@ vec2 take(seen_splat s, vec2 off, vec3 change, inout float passes, inout float b
 
 void main()
 {
-    int tile = int(gl_GlobalInvocationID.x);
+    int tile = own_item();
     if (tile >= tile_count())
         return;
     ivec2 origin = first_pixel(tile);

@@ -7,7 +7,7 @@ layout(rgba32f, binding = 0) writeonly uniform image2D blended;
 
 void main()
 {
-    int tile = int(gl_GlobalInvocationID.x);
+    int tile = own_item();
     if (tile >= tile_count())
         return;
     vec4 sums[PIXELS]; // colour, what passes

@@ -9,7 +9,7 @@ layout(std430, binding = 2) writeonly buffer splat_bounds {
 
 void main()
 {
-    int i = int(gl_GlobalInvocationID.x);
+    int i = own_item();
     if (i >= splat_count)
         return;
     bounds[ORL_SOFT_BOUND_WORDS * i] = 0u;

@@ -5,6 +5,12 @@
 // ORL_SOFT_VEC4S of each. Buffers are read as images: storage reads take a software renderer several times as long.
 layout(rgba32f, binding = 2) uniform imageBuffer splats;
 
+// The splat or tile of this invocation.
+int own_item()
+{
+    return int(gl_GlobalInvocationID.y) * ORL_SOFT_ROW + int(gl_GlobalInvocationID.x);
+}
+
 mat3 view_rotation()
 {
     return transpose(mat3(rotation[0].xyz, rotation[1].xyz, rotation[2].xyz));

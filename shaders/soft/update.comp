@@ -24,7 +24,7 @@ const float SIGMA_MIN = 0.05, SIGMA_MAX = 16.0;
 
 void main()
 {
-    int i = int(gl_GlobalInvocationID.x);
+    int i = own_item();
     if (i >= splat_count || bounds[ORL_SOFT_BOUND_WORDS * i] == 0u)
         return;
     vec4 first = vec4(0.0);

@@ -91,13 +91,13 @@ static enum orl_result update(struct orl_gpu *gpu, struct orl_soft_descent *d, c
         .prog = orl_prog_get(gpu, "soft/backward.comp", NULL, NULL), ORL_PARAMS(*block),
         .images = {r->blended, d->gradient_target, [5] = &d->shares->texels, &r->projected->texels,
                    &r->listed->texels},
-        .size = {(int)r->lists.tiles}});
+        .size = ORL_SOFT_SIZE(r->lists.tiles)});
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/update.comp", NULL, NULL), ORL_PARAMS(*block),
         .bufs = {[2] = r->bounds, [3] = d->places},
         .images = {[2] = &r->splats->texels, &d->mean->texels, &d->square->texels, &d->shares->texels,
                    &r->projected->texels},
-        .size = {(int)r->count}});
+        .size = ORL_SOFT_SIZE(r->count)});
     return ORL_OK;
 }
 

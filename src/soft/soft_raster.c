@@ -67,7 +67,7 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/project.comp", NULL, NULL), ORL_PARAMS(*block),
         .bufs = {[2] = raster->bounds}, .images = {[2] = &raster->splats->texels, [6] = &raster->projected->texels},
-        .size = {(int)raster->count}});
+        .size = ORL_SOFT_SIZE(raster->count)});
     orl_buf_read(raster->bounds, raster->count * sizeof *raster->host_bounds, raster->host_bounds);
     ORL_TRY(orl_gpu_finish(gpu)); // what was read is only good if nothing failed
     ORL_TRY(orl_soft_lists_make(orl_gpu_log(gpu), raster->host_bounds, raster->count, width, height,
@@ -78,6 +78,6 @@ enum orl_result orl_soft_raster_draw(struct orl_gpu *gpu, struct orl_soft_raster
     orl_gpu_dispatch(gpu, &(struct orl_dispatch){
         .prog = orl_prog_get(gpu, "soft/blend.comp", NULL, NULL), ORL_PARAMS(*block),
         .images = {raster->blended, [6] = &raster->projected->texels, &raster->listed->texels},
-        .size = {(int)tiles}});
+        .size = ORL_SOFT_SIZE(tiles)});
     return ORL_OK;
 }

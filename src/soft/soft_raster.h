@@ -16,6 +16,10 @@ struct orl_soft_raster {
     struct orl_soft_lists lists;
 };
 
+// Size of a dispatch of so many splats or tiles.
+#define ORL_SOFT_SIZE(count) \
+    {(int)((count) < ORL_SOFT_ROW ? (count) : ORL_SOFT_ROW), (int)orl_groups(count, ORL_SOFT_ROW)}
+
 // Uploads the model, which must hold a splat.
 enum orl_result orl_soft_raster_init(struct orl_gpu *gpu, const struct orl_soft_model *model,
                                      struct orl_soft_raster *raster) ORL_CHECK_RESULT;

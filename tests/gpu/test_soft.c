@@ -150,6 +150,38 @@ static void test_splats_blend(void **state)
     orl_soft_finish(&model);
 }
 
+// So many that a device may have too few work groups in a row: the last one is drawn and adjusted, too.
+static void test_many_splats(void **state)
+{
+    (void)state;
+    const size_t count = (size_t)65535 * ORL_POINT_GROUP + 1;
+    struct orl_soft_model model = {0};
+    struct orl_soft_descent descent;
+    double loss;
+    if (orl_memory_available() < (size_t)6 << 30)
+        skip();
+    add(&model, 0, 4, 0.25, 0.6f, 1, 0);
+    const struct orl_view view = ahead(1);
+    struct orl_image one = drawn(&model, &view, false);
+    struct orl_soft_model many = {.splats = orl_array(NULL, count, sizeof *many.splats), .count = count};
+    assert_non_null(many.splats); // at the camera, where none is seen
+    memcpy(many.splats[count - 1], model.splats[0], sizeof *many.splats);
+    struct orl_image picture = drawn(&many, &view, false);
+    assert_memory_equal(picture.data, one.data, orl_image_bytes(&one));
+    struct orl_soft_photo photo = {.view = view};
+    assert_int_equal(orl_image_init(NULL, &photo.color, 64, 48, 3, ORL_PIXEL_F32), ORL_OK);
+    assert_int_equal(orl_soft_descent_init(gpu, &many, &descent), ORL_OK);
+    assert_int_equal(orl_soft_descent_step(gpu, &descent, &photo, 1, &loss), ORL_OK);
+    orl_buf_read(descent.raster.splats, count * sizeof *many.splats, many.splats);
+    assert_true(many.splats[count - 1][ORL_SOFT_OPACITY] < model.splats[0][ORL_SOFT_OPACITY]);
+    orl_soft_descent_finish(gpu, &descent);
+    orl_image_finish(&photo.color);
+    orl_image_finish(&picture);
+    orl_image_finish(&one);
+    orl_soft_finish(&many);
+    orl_soft_finish(&model);
+}
+
 static double covered(const struct orl_soft_model *model, const struct orl_view *view)
 {
     struct orl_image picture = drawn(model, view, true);
@@ -431,6 +463,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gradient),
         cmocka_unit_test(test_splats_blend),
+        cmocka_unit_test(test_many_splats),
         cmocka_unit_test(test_size_of_the_view),
         cmocka_unit_test(test_descent),
         cmocka_unit_test(test_memory),
