@@ -273,11 +273,6 @@ enum orl_result orl_flip_compare(const struct orl_log *log, const struct orl_ima
 {
     struct planes one = {0}, two = {0};
     *mean = 0;
-    ORL_REQUIRE(log, a->data && a->type == ORL_PIXEL_U8 && a->channels == 3);
-    ORL_REQUIRE(log, b->data && b->type == ORL_PIXEL_U8 && b->channels == 3);
-    if (a->width != b->width || a->height != b->height)
-        return orl_fail(log, ORL_ERR_ARGUMENT, "pictures of %dx%d and %dx%d cannot be compared",
-                        a->width, a->height, b->width, b->height);
     enum orl_result result = prepare(log, a, &one);
     ORL_THEN(result, prepare(log, b, &two));
     if (result == ORL_OK) {

@@ -64,7 +64,7 @@ void orl_stability_finish(struct orl_stability *stability);
 // The report (docs/reference/json.md). A new reference; NULL: no memory.
 json_t *orl_stability_report(const struct orl_scene *scene, const struct orl_stability *stability);
 
-// One picture of the walk.
+// One picture of the walk: all of its images are as large as the view.
 struct orl_stability_frame {
     struct orl_view view;
     struct orl_image srgb;            // U8 x3
@@ -75,10 +75,8 @@ struct orl_stability_counts {
     size_t of[3 * 255 + 1];
 };
 // Compares two pictures and adds to *counts.
-enum orl_result orl_stability_compare(const struct orl_log *log,
-                                      const struct orl_stability_frame *before,
-                                      const struct orl_stability_frame *after,
-                                      struct orl_stability_counts *counts,
-                                      struct orl_stability_step *step) ORL_CHECK_RESULT;
+void orl_stability_compare(const struct orl_stability_frame *before,
+                           const struct orl_stability_frame *after,
+                           struct orl_stability_counts *counts, struct orl_stability_step *step);
 
 #endif
