@@ -1,7 +1,6 @@
 // oriel hdr: radiance views, panoramas, scenes of radiance photographs.
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/command.h"
 #include "cli/command_output.h"

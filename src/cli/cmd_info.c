@@ -4,7 +4,6 @@
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "core/file.h"
-#include "core/json.h"
 #include "core/text.h"
 #include "oriel/render.h"
 #include "scene/info.h"

@@ -3,7 +3,6 @@
 
 #include "cli/command.h"
 #include "cli/command_output.h"
-#include "scene/meter.h"
 #include "walk/publish.h"
 
 #define PUBLISH_OPTIONS(ROW) \

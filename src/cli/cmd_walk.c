@@ -4,7 +4,6 @@
 #include "cli/command.h"
 #include "cli/command_output.h"
 #include "eval/choice.h"
-#include "scene/meter.h"
 #include "walk/server.h"
 
 #define WALK_OPTIONS(ROW) \

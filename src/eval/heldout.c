@@ -1,6 +1,5 @@
 #include "eval/heldout.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/color.h"
