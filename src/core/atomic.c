@@ -15,7 +15,6 @@ enum {
     LINKS_MAX = 40,     // Linux's own limit
     NAME_TAIL_MAX = 64, // bytes of the final name kept in the temporary name (below NAME_MAX)
     NUMBER_DIGITS = 16,
-    TRIES_MAX = 16,
     STALE_AFTER_S = 60, // a writer locks its temporary file only after creating it
 };
 
@@ -90,12 +89,10 @@ bool orl_temp_is_of(const char *name, const char *prefix, const char *path)
 
 static enum orl_result open_part(const struct orl_log *log, struct orl_atomic_file *file)
 {
-    for (int tries = 1; file->fd < 0; tries++) {
-        ORL_TRY(orl_temp_name(log, orl_part_prefix, file->path, file->temp));
-        file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-        if (file->fd < 0 && (errno != EEXIST || tries == TRIES_MAX))
-            return orl_file_failed(log, file->path);
-    }
+    ORL_TRY(orl_temp_name(log, orl_part_prefix, file->path, file->temp));
+    file->fd = open(file->temp, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file->fd < 0)
+        return orl_file_failed(log, file->path);
     // The lock tells orl_dir_sweep that a writer is active. File systems without locks lack this
     // protection.
     (void)!flock(file->fd, LOCK_EX | LOCK_NB);

@@ -77,7 +77,7 @@ enum orl_result orl_file_copy(const struct orl_log *log, const char *from,
 // The name at the end of a chain of symbolic links. The file may be missing.
 enum orl_result orl_path_follow(const struct orl_log *log, const char *path,
                                 char target[ORL_PATH_SIZE]) ORL_CHECK_RESULT;
-// "PREFIX, a random number, the name": a new temporary name beside `path`.
+// "PREFIX, a random number, the name": a new temporary name beside `path`. Its 64 random bits are those of no other.
 enum orl_result orl_temp_name(const struct orl_log *log, const char *prefix, const char *path,
                               char name[ORL_PATH_SIZE]) ORL_CHECK_RESULT;
 // True for such a name; with a path, for one that was made for this path.

@@ -12,7 +12,7 @@
 #include "core/file.h"
 
 static const char old_prefix[] = ".oriel-old-";
-enum { TRIES_MAX = 16, WAITS_MAX = 500, WAIT_NS = 10000000 };
+enum { WAITS_MAX = 500, WAIT_NS = 10000000 };
 
 // Whoever looks for other runs and then makes a folder does so alone. -1: there are no locks here,
 // or another program holds this one for long.
@@ -76,15 +76,12 @@ static enum orl_result meet_others(const struct orl_log *log, const char *parent
 
 static enum orl_result make(const struct orl_log *log, struct orl_new_dir *dir)
 {
-    for (int tries = 1; !*dir->outer; tries++) {
-        char outer[ORL_PATH_SIZE];
-        ORL_TRY(orl_temp_name(log, orl_part_prefix, dir->out, outer));
-        if (mkdir(outer, 0777) == 0)
-            memcpy(dir->outer, outer, sizeof outer);
-        else if (errno != EEXIST || tries == TRIES_MAX)
-            return orl_fail(log, ORL_ERR_IO, "%s: no folder can be made beside it: %s", dir->out,
-                            strerror(errno));
-    }
+    char outer[ORL_PATH_SIZE];
+    ORL_TRY(orl_temp_name(log, orl_part_prefix, dir->out, outer));
+    if (mkdir(outer, 0777) != 0)
+        return orl_fail(log, ORL_ERR_IO, "%s: no folder can be made beside it: %s", dir->out,
+                        strerror(errno));
+    memcpy(dir->outer, outer, sizeof outer);
     dir->fd = open(dir->outer, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (dir->fd >= 0)
         (void)!flock(dir->fd, LOCK_EX | LOCK_NB);
