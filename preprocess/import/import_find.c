@@ -12,7 +12,7 @@
 
 static bool is_picture(const char *name)
 {
-    return orl_path_has_extension(name, "jpg jpeg png tif tiff exr heic heif avif pbm pgm ppm pnm") ||
+    return orl_path_has_extension(name, "jpg jpeg png tif tiff exr heic heif hif avif pbm pgm ppm pnm") ||
            orl_picture_is_raw(name);
 }
 
