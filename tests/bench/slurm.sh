@@ -56,10 +56,9 @@ options="--quality draft --densifier gl --fuse-cluster 4"
 cp -r "$work/a" "$work/b"
 "$oriel" prepare "$work/p" --out "$work/a" $options --resume --quiet
 "$oriel" plan "$work/b" --photographs 2 --json >"$work/plan.json"
-cd "$source"
-snakemake -s cluster/Snakefile --profile cluster/slurm --config plan="$work/plan.json" \
+cd "$work"
+snakemake -s "$source/cluster/Snakefile" --profile "$source/cluster/slurm" --config plan="$work/plan.json" \
     oriel="$oriel" >"$work/snakemake.log" 2>&1
-rm -f slurm-*.out
 grep "steps (100%) done" "$work/snakemake.log"
 cmp "$work/a/points.ply" "$work/b/points.ply"
 echo "$(grep -c "WEXITSTATUS 0" "$work/slurmctld.log") Slurm jobs; the same points"
