@@ -251,8 +251,9 @@ enum orl_result orl_database_commit(struct orl_database *db)
 
 enum orl_result orl_database_hide_spaces(struct orl_database *db, bool hide)
 {
-    return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', char(31))"
-                            : "UPDATE images SET name = replace(name, char(31), ' ')");
+    // Rows that need no change are not written, so that a database without such names keeps its bytes.
+    return run_sql(db, hide ? "UPDATE images SET name = replace(name, ' ', char(31)) WHERE instr(name, ' ')"
+                            : "UPDATE images SET name = replace(name, char(31), ' ') WHERE instr(name, char(31))");
 }
 
 // --- databases of parts ---
