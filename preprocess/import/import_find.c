@@ -12,8 +12,7 @@
 
 static bool is_picture(const char *name)
 {
-    return orl_path_has_extension(name, "jpg jpeg png tif tiff exr heic heif hif avif pbm pgm ppm pnm") ||
-           orl_picture_is_raw(name);
+    return orl_path_has_extension(name, "jpg jpeg png pbm pgm pnm") || orl_picture_needs_copy(name);
 }
 
 // Length of the name without the extension of a picture or clip. Other dots belong to the name.

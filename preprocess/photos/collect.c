@@ -55,7 +55,7 @@ static void drop_unreadable(struct orl_job *job)
         struct reason reason = {"cannot be read"};
         struct orl_log log = {.level = ORL_LOG_ERROR, .print = keep_reason, .priv = &reason};
         struct orl_picture_info info;
-        if (!orl_develop_wanted(source->given))
+        if (!orl_picture_needs_copy(source->given))
             continue;
         if (orl_picture_inspect(&log, source->path, &info) != ORL_OK)
             skip_for(job, source, &reason);
@@ -74,7 +74,7 @@ static const char *raw_of(const struct orl_job *job, const char *given)
         const char *other = job->sources[k].given;
         // Most names differ, which is seen soonest.
         if (other && strncasecmp(other, given, stem) == 0 && orl_path_stem(other) == stem &&
-            orl_develop_wanted(other))
+            orl_picture_needs_copy(other))
             return other;
     }
     return NULL;

@@ -15,11 +15,6 @@ enum { COPY_QUALITY = 98 };
 
 static const float light_max = 65504; // greatest half float; infinities would spread
 
-bool orl_develop_wanted(const char *name)
-{
-    return orl_path_has_extension(name, "tif tiff exr heic heif hif avif ppm") || orl_picture_is_raw(name);
-}
-
 // --- floating point photographs: choice of white ---
 
 // log2 of the geometric mean of all pixels that are not black.
@@ -96,7 +91,7 @@ enum orl_result orl_develop_read(const struct orl_job *job, const struct orl_sou
 // COLMAP reads PNG of 8 bits alone, and drops colour profiles.
 static bool needs_copy(const struct orl_source *source)
 {
-    return orl_develop_wanted(source->given) || source->deep || source->profiled;
+    return orl_picture_needs_copy(source->given) || source->deep || source->profiled;
 }
 
 static enum orl_result encode(const struct orl_job *job, const struct orl_source *source, double ev,
@@ -154,7 +149,7 @@ size_t orl_develop_at_once(const struct orl_job *job)
     double most = 1;
     for (size_t i = 0; i < job->source_count; i++) {
         const struct orl_source *source = &job->sources[i];
-        int bytes = orl_develop_wanted(source->given) || source->deep ? DEEP : EIGHT;
+        int bytes = orl_picture_needs_copy(source->given) || source->deep ? DEEP : EIGHT;
         most = fmax(most, (double)bytes * source->width * source->height);
     }
     double count = 0.5 * (double)orl_memory_available() / most;

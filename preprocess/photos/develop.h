@@ -5,8 +5,6 @@
 
 #include "preprocess/job/job.h"
 
-// True when COLMAP needs an 8-bit copy of the file, by its extension.
-bool orl_develop_wanted(const char *name);
 // Photographs that may be decoded at once, of which half of the memory that is left has room. Those without a size yet
 // do not count.
 size_t orl_develop_at_once(const struct orl_job *job);

@@ -16,7 +16,7 @@
 
 static bool is_photo_name(const char *name)
 {
-    return name[0] != '.' && (orl_path_has_extension(name, "jpg jpeg png") || orl_develop_wanted(name));
+    return name[0] != '.' && (orl_path_has_extension(name, "jpg jpeg png") || orl_picture_needs_copy(name));
 }
 
 // Picture formats that Oriel does not read, though a user may expect it to.
@@ -77,7 +77,7 @@ void orl_photos_close_up(struct orl_job *job)
 // The scene's own name of a file at `given`, a path below a folder that was given.
 static char *flat_name(const struct orl_log *log, const char *given)
 {
-    char *name = orl_develop_wanted(given)
+    char *name = orl_picture_needs_copy(given)
                      ? orl_format(log, "%.*s.jpg", (int)orl_path_stem(given), given)
                      : orl_strdup(log, given);
     for (char *c = name; c && *c; c++)

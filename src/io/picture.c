@@ -13,10 +13,15 @@
 // Larger pictures are refused. Photographs are smaller, and a few hostile bytes must not make Oriel allocate all memory.
 static const uint64_t max_pixels = (uint64_t)1 << 30;
 
-bool orl_picture_is_raw(const char *path)
+static bool is_raw(const char *path)
 {
     return orl_path_has_extension(path, "3fr arw cr2 cr3 crw dcr dng erf iiq k25 kdc mef mrw nef nrw orf "
                                         "pef raf raw rw2 sr2 srf srw x3f");
+}
+
+bool orl_picture_needs_copy(const char *path)
+{
+    return orl_path_has_extension(path, "tif tiff exr heic heif hif avif ppm") || is_raw(path);
 }
 
 bool orl_picture_is_png(const char *path)
@@ -115,7 +120,7 @@ static orl_picture_reader *find_reader(struct orl_picture_file *file)
     for (size_t i = 0; i < ORL_COUNT(known) && !read; i++)
         if (got >= known[i].at + known[i].size && memcmp(start + known[i].at, known[i].magic, known[i].size) == 0)
             read = known[i].read;
-    if ((!read || read == orl_tiff_read) && got && orl_picture_is_raw(file->path))
+    if ((!read || read == orl_tiff_read) && got && is_raw(file->path))
         read = orl_raw_read;
     if (!read)
         orl_logf(file->log, ORL_LOG_ERROR, "%s: not a picture of a known kind "

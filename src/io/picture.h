@@ -52,8 +52,8 @@ enum orl_result orl_picture_read(const struct orl_log *log, const char *path, in
 // camera's white balance and are 1 where the sensor saturates.
 enum orl_result orl_picture_read_linear(const struct orl_log *log, const char *path,
                                         struct orl_image *image) ORL_CHECK_RESULT;
-// True when the extension is that of a camera RAW format.
-bool orl_picture_is_raw(const char *path);
+// True when COLMAP needs an 8-bit copy of the file, by its extension; so it does of camera RAW.
+bool orl_picture_needs_copy(const char *path);
 // True when the extension is that of PNG.
 bool orl_picture_is_png(const char *path);
 
